@@ -22,8 +22,8 @@ def draw_scene(rng):
 
 def agree(subject, L, Lwa, Lmax, bias, *, what):
     expected = drago.adaptive_log(L, Lwa, Lmax, bias=bias)
-    came = subject.adaptive_log(L, Lwa, Lmax, bias=bias)
-    same(came, expected, 1e-4, what=what, kind="curve")
+    answer = subject.adaptive_log(L, Lwa, Lmax, bias=bias)
+    same(answer, expected, 1e-4, what=what, kind="curve")
 
 
 @points(3)
@@ -61,8 +61,8 @@ def test_black_is_0_and_the_brightest_is_1(subject, rng):
     """
     _, Lwa, Lmax = draw_scene(rng)
     ends = rng.permutation([0.0, Lmax, Lmax])
-    came = subject.adaptive_log(ends, Lwa, Lmax, bias=0.85)
-    same(came, (ends > 0).astype(float), 1e-4, what="Ld of black and of the brightest luminance")
+    answer = subject.adaptive_log(ends, Lwa, Lmax, bias=0.85)
+    same(answer, (ends > 0).astype(float), 1e-4, what="Ld of black and of the brightest luminance")
 
 
 @points(3)

@@ -40,7 +40,7 @@ def photographs(rng, E, offsets, times, noise=0.004):
     return np.stack(taken)
 
 
-def drawn(rng, least, most):
+def draw_inputs(rng, least, most):
     """Return an offset (dy, dx), each of `least` to `most` pixels in a random direction."""
     return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
 
@@ -68,9 +68,9 @@ def test_a_shift_of_one_pixel_is_found(subject, rng):
 
     Try the nine candidates, and take the one with the fewest differing pixels.
     """
-    images = photographs(rng, scene(rng), [(0, 0), drawn(rng, 1, 1)], (1, 1))
-    came = finite(subject.align(images), (2, 2), what="the offsets").astype(float)
-    same(np.abs(came[1] - came[0]), [1, 1], 0, what="the size of the offset in y and in x")
+    images = photographs(rng, scene(rng), [(0, 0), draw_inputs(rng, 1, 1)], (1, 1))
+    answer = finite(subject.align(images), (2, 2), what="the offsets").astype(float)
+    same(np.abs(answer[1] - answer[0]), [1, 1], 0, what="the size of the offset in y and in x")
 
 
 @points(6)
@@ -86,10 +86,12 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
     for least, times in zip(
         (16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True
     ):  # 16: on all levels
-        dy, dx = drawn(rng, least, 20)
+        dy, dx = draw_inputs(rng, least, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
-        came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
-        same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+        answer = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
+        same(
+            answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first"
+        )
 
 
 @points(4, needs="test_a_shift_of_one_pixel_is_found")
@@ -124,10 +126,12 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
     Shrink the gray image. Compute the threshold and both bitmaps again at each level.
     """
     for _ in range(2):
-        dy, dx = drawn(rng, 17, 23)
+        dy, dx = draw_inputs(rng, 17, 23)
         images = photographs(rng, scene(rng, fine=1.6), [(0, 0), (dy, dx)], (1, 1.5))
-        came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
-        same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+        answer = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
+        same(
+            answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first"
+        )
 
 
 @points(2)
@@ -140,11 +144,11 @@ def test_noise_near_the_median_does_not_count(subject, rng):
 
     AND the differences with both exclusion bitmaps before you count.
     """
-    dy, dx = drawn(rng, 3, 12)
+    dy, dx = draw_inputs(rng, 3, 12)
     images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], (1, 1))
     images[:, :, :128] = np.median(images[:, :, 128:]) + rng.integers(-2, 3, (H, 128))
-    came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
-    same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+    answer = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
+    same(answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
 @points(4)
@@ -158,10 +162,10 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     """
     E = scene(rng)
     dy, dx = (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
-    came = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
-    same(came[0] - came[1], [dy, dx], 0, what="the offset at 4 bits")
-    came = finite(subject.align(photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1), (2, 2))
-    same(came[0] - came[1], [1, -1], 0, what="the offset at 1 bit")
+    answer = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
+    same(answer[0] - answer[1], [dy, dx], 0, what="the offset at 4 bits")
+    answer = finite(subject.align(photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1), (2, 2))
+    same(answer[0] - answer[1], [1, -1], 0, what="the offset at 1 bit")
 
 
 @points(6)

@@ -8,17 +8,17 @@ from hdrlab.core import gainmap
 from hdrlab.course.checks.compare import points, same
 
 
-def agree(subject, rng, channels=(), **knobs):
+def agree(subject, rng, channels=(), **options):
     """Compare the light of an image, a third of it black, for gains with one range or one per
     channel.
     """
     low = rng.uniform(-2, -1, channels)
     high = rng.uniform(2, 3, channels)
     sdr, g = np.maximum(rng.uniform(-0.5, 1, (2, 12, 16, 3)), 0)
-    came, expected = (
-        f(sdr, g, low, high, **knobs) for f in (subject.apply_gain, gainmap.apply_gain)
+    answer, expected = (
+        f(sdr, g, low, high, **options) for f in (subject.apply_gain, gainmap.apply_gain)
     )
-    same(came, expected, 1e-3, what="light", picture=True)
+    same(answer, expected, 1e-3, what="light", picture=True)
 
 
 @points(5)

@@ -11,7 +11,7 @@ from hdrlab.tonemap import fattal
 INNER = (slice(24, -24), slice(24, -24))
 
 
-def drawn(rng, shape=(128, 144)):
+def draw_inputs(rng, shape=(128, 144)):
     """Return log luminance with soft light, a few steep edges and some texture."""
     soft = gaussian_filter(rng.standard_normal(shape), 12)
     y, x = np.indices(shape)
@@ -21,12 +21,14 @@ def drawn(rng, shape=(128, 144)):
     )
 
 
-def asked(subject, lL, **knobs):
+def get_answer(subject, lL, **options):
     """Return the states, and ln Phi of the last one, at full size."""
-    came = [parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **knobs))]
-    Phi = finite(came[-1][4], lL.shape, what="Phi").astype(float)
+    answer = [
+        parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **options))
+    ]
+    Phi = finite(answer[-1][4], lL.shape, what="Phi").astype(float)
     require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi)
-    return came, np.log(Phi)
+    return answer, np.log(Phi)
 
 
 # right iterations may differ in their steps, which small inputs show most
@@ -40,9 +42,9 @@ def test_there_is_a_state_for_each_level(subject, rng):
 
     128 x 144 pixels have three levels, with 32, 64 and 128 rows.
     """
-    lL = drawn(rng)
-    came, _ = asked(subject, lL, alpha=0.1, beta=0.9)
-    rows = np.array([np.shape(one[3])[0] for one in came])
+    lL = draw_inputs(rng)
+    answer, _ = get_answer(subject, lL, alpha=0.1, beta=0.9)
+    rows = np.array([np.shape(one[3])[0] for one in answer])
     same(rows, [32, 64, 128], 0, what="the number of rows of phi in each state")
 
 
@@ -58,8 +60,8 @@ def test_every_level_attenuates_a_ramp_by_the_same_factor(subject, rng):
     """
     c = float(rng.uniform(0.01, 0.05))
     lL = np.broadcast_to(np.arange(160, dtype=np.float32) * np.float32(c), (128, 160)).copy()
-    came, lPhi = asked(subject, lL, alpha=0.1, beta=0.9)
-    same(len(came), 3, 0, what="the number of levels of 128 x 160 pixels")
+    answer, lPhi = get_answer(subject, lL, alpha=0.1, beta=0.9)
+    same(len(answer), 3, 0, what="the number of levels of 128 x 160 pixels")
     expected = np.full(lPhi.shape, 0.3 * np.log(0.1))
     same(lPhi[INNER], expected[INNER], 0.04, what="ln Phi of a ramp", picture=True)
 
@@ -73,10 +75,10 @@ def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
     a is alpha times the mean gradient of each level. So another alpha multiplies all of Phi by one
     number.
     """
-    lL = drawn(rng)
-    _, none = asked(subject, lL, alpha=0.1, beta=1.0)
+    lL = draw_inputs(rng)
+    _, none = get_answer(subject, lL, alpha=0.1, beta=1.0)
     same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
-    one, other = (asked(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
+    one, other = (get_answer(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
     expected = np.full(lL.shape, 3 * 0.2 * np.log(3))
     same(other - one, expected, 0.05, what="ln Phi with alpha = 0.3 minus ln Phi with alpha = 0.1")
 
@@ -89,9 +91,9 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
 
     The mean gradient is that of level k, too.
     """
-    lL = drawn(rng)
-    came, _ = asked(subject, lL, alpha=0.1, beta=0.8)
-    for one in came:
+    lL = draw_inputs(rng)
+    answer, _ = get_answer(subject, lL, alpha=0.1, beta=0.8)
+    for one in answer:
         slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
         phi = finite(one[3], np.shape(one[1]), what="phi").astype(float)
         steep = slope > 0.2 * slope.mean()
@@ -113,8 +115,8 @@ def test_the_last_phi_combines_all_levels(subject, rng):
 
     Enlarge with linear interpolation. Repeated pixels leave blocks.
     """
-    lL = drawn(rng)
-    _, lPhi = asked(subject, lL, alpha=0.1, beta=0.85)
+    lL = draw_inputs(rng)
+    _, lPhi = get_answer(subject, lL, alpha=0.1, beta=0.85)
     truth = np.log(list(fattal.attenuation_steps(lL, alpha=0.1, beta=0.85))[-1].Phi)
     soft = gaussian_filter(lPhi - truth, 3)
     same(
@@ -135,8 +137,8 @@ def test_a_slope_below_noise_counts_as_noise(subject, rng):
     Use max(slope, noise * mean) in place of the slope.
     """
     noise = float(rng.uniform(0.3, 0.6))
-    came, _ = asked(subject, drawn(rng), alpha=0.1, beta=0.8, noise=noise)
-    for one in came:
+    answer, _ = get_answer(subject, draw_inputs(rng), alpha=0.1, beta=0.8, noise=noise)
+    for one in answer:
         slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
         expected = -0.2 * np.log(np.maximum(slope / slope.mean(), noise) / 0.1)
         what = f"ln phi of level {int(one[0])} with noise={noise:.2g}"
@@ -151,9 +153,9 @@ def test_phi_is_enlarged_by_linear_interpolation(subject, rng):
 
     Interpolate along straight lines, for example with scipy.ndimage.map_coordinates and order=1.
     """
-    came, _ = asked(subject, drawn(rng), alpha=0.1, beta=0.8)
-    enlarged = np.asarray(came[-1][4], float) / np.asarray(came[-1][3], float)
+    answer, _ = get_answer(subject, draw_inputs(rng), alpha=0.1, beta=0.8)
+    enlarged = np.asarray(answer[-1][4], float) / np.asarray(answer[-1][3], float)
     steps = np.abs(np.diff(enlarged[INNER], axis=1))
     equal = float(np.mean(steps < 1e-3 * steps.mean()))
-    said = f"Phi / phi of the full image: {equal:.0%} of the neighbors in a row are equal"
-    require(equal < 0.3, said, came=enlarged, kind="image")
+    message = f"Phi / phi of the full image: {equal:.0%} of the neighbors in a row are equal"
+    require(equal < 0.3, message, came=enlarged, kind="image")

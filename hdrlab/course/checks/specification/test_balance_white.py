@@ -10,8 +10,8 @@ def agree(subject, rng, gains, *, brightest, darkest=0.0):
     """Compare the balanced mosaics of random exposures behind random filters."""
     X = rng.uniform(darkest, brightest, (12, 18))
     c = rng.integers(0, 3, X.shape)
-    came, expected = (f(X, c, gains) for f in (subject.balance_white, development.balance_white))
-    same(came, expected, 1e-5, what="X")
+    answer, expected = (f(X, c, gains) for f in (subject.balance_white, development.balance_white))
+    same(answer, expected, 1e-5, what="X")
 
 
 @points(6)

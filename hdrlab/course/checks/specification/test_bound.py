@@ -10,14 +10,14 @@ G = responses.true_g("gamma")
 TOP = 250
 
 
-def drawn(rng, P=3, M=40):
+def draw_inputs(rng, P=3, M=40):
     """Return Z (P, M) of levels that measure nothing, and B (P,) from short to long."""
     B = np.cumsum(rng.uniform(0.5, 2, P))
     split = rng.integers(0, P + 1, M)  # from that frame on the pixel is clipped, before it is dark
     return np.where(np.arange(P)[:, None] >= split, rng.integers(TOP, 256, (P, M)), 0), B
 
 
-def asked(subject, Z, B, shown=None):
+def get_answer(subject, Z, B, shown=None):
     """Return ln E and the flags."""
     E, flags = parts(
         subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool) if shown is None else shown), 2
@@ -33,7 +33,7 @@ def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
 
     E and flags both have the shape (M,).
     """
-    Z, B = drawn(rng)
+    Z, B = draw_inputs(rng)
     E, flags = parts(subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool)), 2)
     finite(E, (40,), what="E"), finite(flags, (40,), what="the flags")
 
@@ -47,12 +47,12 @@ def test_a_pixel_clipped_in_all_frames_gets_the_bound_of_the_shortest(subject, r
 
     ln E = max of g[top] - B over the clipped frames.
     """
-    _, B = drawn(rng)
+    _, B = draw_inputs(rng)
     Z = rng.integers(TOP, 256, (3, 20))
-    lE, _ = asked(subject, Z, B)
+    lE, _ = get_answer(subject, Z, B)
     same(lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels")
     order = rng.permutation(3)
-    lE, _ = asked(subject, Z[order], B[order])
+    lE, _ = get_answer(subject, Z[order], B[order])
     same(
         lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels, frames in another order"
     )
@@ -66,8 +66,8 @@ def test_a_pixel_dark_in_all_frames_gets_the_bound_of_the_longest(subject, rng):
 
     ln E = min of g[1] - B over the dark frames.
     """
-    _, B = drawn(rng)
-    lE, _ = asked(subject, np.zeros((3, 20), int), B)
+    _, B = draw_inputs(rng)
+    lE, _ = get_answer(subject, np.zeros((3, 20), int), B)
     same(lE, np.full(20, G[1] - B[-1]), 1e-3, what="ln E of dark pixels")
 
 
@@ -80,10 +80,10 @@ def test_between_two_bounds_ln_E_is_their_mean(subject, rng):
 
     ln E = (lower + upper) / 2.
     """
-    Z, B = drawn(rng)
+    Z, B = draw_inputs(rng)
     for frames in ([0, 1, 2], [2, 0, 1]):
         truth = bound(Z[frames], B[frames], G, TOP, np.ones(Z.shape, bool))[0]
-        same(asked(subject, Z[frames], B[frames])[0], np.log(truth), 1e-3, what="ln E")
+        same(get_answer(subject, Z[frames], B[frames])[0], np.log(truth), 1e-3, what="ln E")
 
 
 @points(2)
@@ -94,11 +94,11 @@ def test_a_frame_that_does_not_show_the_pixel_is_ignored(subject, rng):
 
     clipped = shown & (Z >= top), and dark = shown & (Z == 0).
     """
-    Z, B = drawn(rng)
+    Z, B = draw_inputs(rng)
     shown = np.ones(Z.shape, bool)
     shown[0] = False
     truth = bound(Z, B, G, TOP, shown)[0]
-    same(asked(subject, Z, B, shown)[0], np.log(truth), 1e-3, what="ln E")
+    same(get_answer(subject, Z, B, shown)[0], np.log(truth), 1e-3, what="ln E")
 
 
 def test_the_flags_say_why_a_pixel_has_no_measurement(subject, rng):
@@ -108,12 +108,12 @@ def test_the_flags_say_why_a_pixel_has_no_measurement(subject, rng):
 
     flags = 1 * clipped + 2 * dark, and 8 where a pixel is neither.
     """
-    Z, B = drawn(rng)
+    Z, B = draw_inputs(rng)
     shown = np.ones(Z.shape, bool)
-    same(asked(subject, Z, B)[1], bound(Z, B, G, TOP, shown)[1], 0, what="the flags")
+    same(get_answer(subject, Z, B)[1], bound(Z, B, G, TOP, shown)[1], 0, what="the flags")
     shown[0] = False
     what = "the flags of pixels that the first photo does not show"
-    same(asked(subject, Z, B, shown)[1], bound(Z, B, G, TOP, shown)[1], 0, what=what)
+    same(get_answer(subject, Z, B, shown)[1], bound(Z, B, G, TOP, shown)[1], 0, what=what)
 
 
 @points(2)
@@ -124,7 +124,7 @@ def test_a_pixel_without_any_bound_is_0_and_has_the_flag_8(subject, rng):
 
     E = 0, and the flag is 8.
     """
-    Z, B = drawn(rng)
+    Z, B = draw_inputs(rng)
     Z[:, ::2] = rng.integers(2, TOP - 1, Z[:, ::2].shape)
     Z[0, ::4] = 1
     Z[1, ::4] = TOP - 1

@@ -6,7 +6,7 @@ from hdrlab.capture import metering
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def asked(subject, rng):
+def get_answer(subject, rng):
     """Return the student's weights and the expected ones."""
     H = int(rng.integers(20, 30))
     W = int(rng.integers(36, 48))
@@ -14,8 +14,10 @@ def asked(subject, rng):
     at = float(rng.uniform(0.2, 0.3)), float(rng.uniform(0.65, 0.8))
     inside = float(rng.uniform(0.6, 0.8))
     share = int(rng.integers(120, 300)) / (H * W)
-    came = subject.centre(shape, inside=inside, share=share, at=at)
-    return finite(came, shape, what="w"), metering.centre(shape, inside=inside, share=share, at=at)
+    answer = subject.centre(shape, inside=inside, share=share, at=at)
+    return finite(answer, shape, what="w"), metering.centre(
+        shape, inside=inside, share=share, at=at
+    )
 
 
 def is_valid_input(shape, **_):
@@ -37,8 +39,8 @@ def test_the_weights_are_a_gaussian_around_the_center(subject, rng):
     meter.
     """
     for _ in range(4):
-        came, w = asked(subject, rng)
-        same(came / came.max(), w / w.max(), 0.01, what="w / max(w)", picture=True)
+        answer, w = get_answer(subject, rng)
+        same(answer / answer.max(), w / w.max(), 0.01, what="w / max(w)", picture=True)
 
 
 @points(1, needs="test_the_weights_are_a_gaussian_around_the_center")
@@ -49,5 +51,5 @@ def test_the_weights_sum_to_one(subject, rng):
 
     Divide w by its sum.
     """
-    came, _ = asked(subject, rng)
-    same(np.sum(came), 1, 1e-3, what="the sum of w")
+    answer, _ = get_answer(subject, rng)
+    same(np.sum(answer), 1, 1e-3, what="the sum of w")

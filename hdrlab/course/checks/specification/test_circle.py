@@ -36,8 +36,8 @@ def photos(light, falloff, ratio=1.3):
     return respond(light), respond(ratio * light * falloff)
 
 
-def same_radius(subject, A, B, *, radius, what="the radius", **knobs):
-    same(subject.circle(A, B, **knobs), radius, TOLERANCE, what=f"{what}, in pixels")
+def same_radius(subject, A, B, *, radius, what="the radius", **options):
+    same(subject.circle(A, B, **options), radius, TOLERANCE, what=f"{what}, in pixels")
 
 
 # few pixels fill few of the bins, and right functions treat nearly empty bins in different ways
@@ -126,8 +126,8 @@ def test_a_small_difference_is_tolerated(subject, rng):
     same_radius(
         subject, A, B, radius=OUTER, what="the radius for a tolerance of 12", tolerance=12.0
     )
-    came = subject.circle(A, B)
-    same(came, 0.6 * OUTER, TOLERANCE, what="the radius for the default tolerance")
+    answer = subject.circle(A, B)
+    same(answer, 0.6 * OUTER, TOLERANCE, what="the radius for the default tolerance")
 
 
 @points(2, needs="test_the_circle_ends_where_the_second_photo_gets_darker")

@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.tonemap import brush
 
 
-def drawn(rng, bins=24):
+def draw_inputs(rng, bins=24):
     """Return a histogram of fractions with two high bins, some low ones and an empty one."""
     h = rng.uniform(0.2, 1.5, bins)
     h[int(rng.integers(2, 8))] *= 12
@@ -23,7 +23,7 @@ def test_the_excess_goes_where_there_is_room(subject, rng):
 
     room = top - min(h, top), and the result is min(h, top) + room * excess / sum(room).
     """
-    h = drawn(rng)
+    h = draw_inputs(rng)
     for limit in (float(rng.uniform(1.5, 2)), float(rng.uniform(2.2, 3))):
         expected = brush.clip_histogram(h, limit=limit)
         same(subject.clip_histogram(h, limit=limit), expected, 1e-6, what="h", kind="curve")
@@ -38,7 +38,7 @@ def test_no_pixel_is_lost_and_no_bin_is_above_the_limit(subject, rng):
     If your sum is less than 1, the excess is missing. If a bin is too high, do not distribute the
     excess evenly.
     """
-    h = drawn(rng, bins=int(rng.integers(30, 60)))
+    h = draw_inputs(rng, bins=int(rng.integers(30, 60)))
     h_clipped = finite(subject.clip_histogram(h, limit=1.4), h.shape, what="h")
     same(h_clipped.sum(), 1, 1e-5, what="the sum of h")
     same(
@@ -55,9 +55,9 @@ def test_a_limit_of_1_makes_all_bins_equal(subject, rng):
 
     The limit counts in means: top = limit / bins.
     """
-    h = drawn(rng)
-    came = subject.clip_histogram(h, limit=1.0)
-    same(came, np.full(len(h), 1 / len(h)), 1e-6, what="h for a limit of 1", kind="curve")
+    h = draw_inputs(rng)
+    answer = subject.clip_histogram(h, limit=1.0)
+    same(answer, np.full(len(h), 1 / len(h)), 1e-6, what="h for a limit of 1", kind="curve")
 
 
 @points(1, needs="test_the_excess_goes_where_there_is_room")
@@ -68,5 +68,5 @@ def test_a_histogram_below_the_limit_stays(subject, rng):
 
     If values change, you divide by something that is not 1 here.
     """
-    h = drawn(rng)
+    h = draw_inputs(rng)
     same(subject.clip_histogram(h, limit=22.0), h, 1e-6, what="h with a high limit", kind="curve")

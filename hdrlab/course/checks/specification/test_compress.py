@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a base, and bounds low and high that none of its pixels reaches."""
     low = float(rng.uniform(-2, 0))
     high = low + float(rng.uniform(3, 5))
@@ -20,12 +20,12 @@ def test_the_base_gets_the_requested_contrast(subject, rng):
 
     With a natural logarithm, c is too large by a factor of 2.3.
     """
-    base, low, high = drawn(rng)
+    base, low, high = draw_inputs(rng)
     for contrast in (50.0, 10.0):
         m = np.log10(contrast) / (high - low)
-        came = subject.compress(base, low, high, contrast=contrast)
+        answer = subject.compress(base, low, high, contrast=contrast)
         what = "the compressed base minus its mean"
-        same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
+        same(answer - np.mean(answer), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
 
 @points(3)
@@ -36,7 +36,7 @@ def test_the_bright_end_becomes_white(subject, rng):
 
     Subtract high from the base before you multiply by m.
     """
-    base, low, high = drawn(rng)
+    base, low, high = draw_inputs(rng)
     ends = np.array([[low, high]], np.float32)
     same(
         subject.compress(ends, low, high, contrast=50.0),
@@ -54,7 +54,7 @@ def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
 
     Limit m to at most 1.
     """
-    base, low, high = drawn(rng)
+    base, low, high = draw_inputs(rng)
     flat = low + (base - low) / 10
     high = low + (high - low) / 10
     same(

@@ -10,7 +10,7 @@ SHAPE = (26, 34)
 FULL = (2 * SHAPE[0] - 1, 2 * SHAPE[1] - 1)
 
 
-def drawn(rng, discarded=0.0):
+def draw_inputs(rng, discarded=0.0):
     """Return X (2, h, w), two photos of one scene that is brighter on one side, and their shift."""
     h, w = SHAPE
     scene = gaussian_filter(rng.standard_normal((h + 12, w + 12)), 1.2) * 4
@@ -44,7 +44,7 @@ def test_the_largest_value_is_at_the_shift_of_the_photos(subject, rng):
 
     c[i, j] belongs to the shift (i - (h - 1), j - (w - 1)).
     """
-    X, shift = drawn(rng)
+    X, shift = draw_inputs(rng)
     c = finite(subject.correlation(X), FULL, what="c")
     largest = np.array(np.unravel_index(int(np.argmax(c)), c.shape)) - np.array(SHAPE) + 1
     require(
@@ -64,7 +64,7 @@ def test_each_value_is_the_sum_of_products_at_its_shift(subject, rng):
 
     Subtract the local mean of each photo first. Of one of the two spectra, take the conjugate.
     """
-    same_correlation(subject, drawn(rng)[0])
+    same_correlation(subject, draw_inputs(rng)[0])
 
 
 @points(5)
@@ -77,7 +77,7 @@ def test_discarded_pixels_take_no_part(subject, rng):
     pixels.
     """
     same_correlation(
-        subject, drawn(rng, discarded=0.08)[0], what="c of photos with discarded pixels"
+        subject, draw_inputs(rng, discarded=0.08)[0], what="c of photos with discarded pixels"
     )
 
 
@@ -89,7 +89,7 @@ def test_exchanging_the_photos_reverses_all_shifts(subject, rng):
 
     c must be turned by 180 degrees.
     """
-    X, _ = drawn(rng)
+    X, _ = draw_inputs(rng)
     c = finite(subject.correlation(X), FULL, what="c").astype(float)
     turned = subject.correlation(X[::-1].copy())
     same(turned, c[::-1, ::-1], 1e-3 * np.abs(c).max(), what="c, exchanged", picture=True)

@@ -7,7 +7,7 @@ import math
 from hdrlab.course.checks.compare import points, require, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return scene, usable and overlap in stops."""
     usable = float(rng.uniform(5, 9))
     return float(rng.uniform(12, 24)), usable, float(rng.uniform(1, usable - 1))
@@ -20,7 +20,7 @@ def test_a_scene_of_less_than_one_stop_needs_one_photo(subject, rng):
 
     One photo covers this scene.
     """
-    _, usable, overlap = drawn(rng)
+    _, usable, overlap = draw_inputs(rng)
     same(subject.count(0.4, usable, overlap), 1, 0, what="the number of photos for 0.4 stops")
 
 
@@ -32,7 +32,7 @@ def test_a_scene_that_one_photo_covers_needs_one(subject, rng):
 
     Return at least one photo: max(1, ...).
     """
-    _, usable, overlap = drawn(rng)
+    _, usable, overlap = draw_inputs(rng)
     for scene in (0.5, usable / 2, usable - 0.01):
         same(
             subject.count(scene, usable, overlap),
@@ -51,16 +51,16 @@ def test_the_photos_cover_the_whole_scene_without_one_to_spare(subject, rng):
 
     n = 1 + ceil((scene - usable) / (usable - overlap)).
     """
-    scenes = [drawn(rng) for _ in range(8)]
+    scenes = [draw_inputs(rng) for _ in range(8)]
     found = [
         subject.count(*one) for one in scenes
     ]  # call all of them first: a known mistake is recognized by its answers
     for (scene, usable, overlap), n in zip(scenes, map(float, found), strict=True):
         reach = usable + (n - 1) * (usable - overlap)
-        said = f"{n:g} photos cover {reach:.1f} stops, but the scene has {scene:.1f}: take more"
-        require(reach >= scene - 1e-6, said)
-        said = f"{n:g} photos are one too many: {n - 1:g} also cover the {scene:.1f} stops"
-        require(reach - (usable - overlap) < scene, said)
+        message = f"{n:g} photos cover {reach:.1f} stops, but the scene has {scene:.1f}: take more"
+        require(reach >= scene - 1e-6, message)
+        message = f"{n:g} photos are one too many: {n - 1:g} also cover the {scene:.1f} stops"
+        require(reach - (usable - overlap) < scene, message)
 
 
 @points(3)

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import as_shape, numbers, points, require, same
 
 
-def asked(subject, rng, e):
+def get_answer(subject, rng, e):
     """Return the student's values of 200 halves with exponents e, and the correct values."""
     shape = (10, 20)
     bits = (
@@ -25,8 +25,8 @@ def test_a_half_is_its_mantissa_times_a_power_of_two(subject, rng):
     The value is 2^(e - 15) (1 + m / 1024). Shift the bits right by 10 to get e, and keep the lowest
     10 bits for m.
     """
-    came, values = asked(subject, rng, np.arange(1, 31))
-    shares = np.abs(as_shape(numbers(came), values.shape) / values)
+    answer, values = get_answer(subject, rng, np.arange(1, 31))
+    shares = np.abs(as_shape(numbers(answer), values.shape) / values)
     same(
         shares,
         np.ones(values.shape),
@@ -43,9 +43,9 @@ def test_the_first_bit_is_the_sign(subject, rng):
 
     Shift the bits right by 15: the result is 1 for a negative number.
     """
-    came, values = asked(subject, rng, [15])
+    answer, values = get_answer(subject, rng, [15])
     same(
-        np.sign(as_shape(numbers(came), values.shape)),
+        np.sign(as_shape(numbers(answer), values.shape)),
         np.sign(values),
         0,
         what="signs",
@@ -61,9 +61,13 @@ def test_the_smallest_numbers_have_no_hidden_one(subject, rng):
 
     The value is 2^-14 m / 1024.
     """
-    came, values = asked(subject, rng, [0])
+    answer, values = get_answer(subject, rng, [0])
     same(
-        1e8 * numbers(came), 1e8 * values, 1e-3, what="values with e = 0, times 10^8", picture=True
+        1e8 * numbers(answer),
+        1e8 * values,
+        1e-3,
+        what="values with e = 0, times 10^8",
+        picture=True,
     )
     same(subject.decode_half(np.zeros(3, np.uint16)), np.zeros(3), 0, what="three zeros")
 
@@ -79,6 +83,6 @@ def test_the_largest_exponent_is_infinity_or_nan(subject, rng):
     bits = np.array(
         [0x7C00, 0xFC00, 0x7C00 + rng.integers(1, 1024), 0xFC00 + rng.integers(1, 1024)]
     )
-    came = as_shape(numbers(subject.decode_half(bits.astype(np.uint16)), what="the values"), (4,))
-    said = f"expected inf, -inf, nan, nan, got {came.tolist()}"
-    require(np.array_equal(came, [np.inf, -np.inf, np.nan, np.nan], equal_nan=True), said)
+    answer = as_shape(numbers(subject.decode_half(bits.astype(np.uint16)), what="the values"), (4,))
+    message = f"expected inf, -inf, nan, nan, got {answer.tolist()}"
+    require(np.array_equal(answer, [np.inf, -np.inf, np.nan, np.nan], equal_nan=True), message)

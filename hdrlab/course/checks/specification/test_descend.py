@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import numbers, points, require, same
 from hdrlab.response.mann import descend
 
 
-def drawn(rng, *, first=0, last=255):
+def draw_inputs(rng, *, first=0, last=255):
     """Return T (256,), which is known from `first` to `last`: a curved camera's, with alpha and ripples."""
     z = np.arange(256.0)
     gamma = rng.uniform(0.4, 0.6)
@@ -19,13 +19,13 @@ def drawn(rng, *, first=0, last=255):
 def same_series(subject, T, start, low, what="the series"):
     """Compare a series with the library's, which may be longer than the student's in no place."""
     expected = descend(T, start, low=low)
-    came = numbers(subject.descend(T, start, low=low), what=what).astype(float).ravel()
+    answer = numbers(subject.descend(T, start, low=low), what=what).astype(float).ravel()
     require(
-        len(came) == len(expected),
-        f"{what}: expected {len(expected)} values, got {len(came)}",
+        len(answer) == len(expected),
+        f"{what}: expected {len(expected)} values, got {len(answer)}",
         expected=expected,
     )
-    same(came, expected, 1e-2, what=what, kind="values")
+    same(answer, expected, 1e-2, what=what, kind="values")
 
 
 def safe(T, start, low):
@@ -54,7 +54,7 @@ def test_each_value_is_the_one_below_in_the_dark_photo(subject, rng):
 
     The series is start, T(start), T(T(start)), and so on. Begin with start itself.
     """
-    T = np.round(drawn(rng))
+    T = np.round(draw_inputs(rng))
     same_series(subject, T, float(rng.integers(215, 250)), 40.5)
 
 
@@ -66,7 +66,7 @@ def test_between_two_values_t_is_a_straight_line(subject, rng):
 
     numpy.interp does this. Do not round the values of the series.
     """
-    T = drawn(rng)
+    T = draw_inputs(rng)
     low = 30.0
     same_series(subject, T, clear_start(rng, T, low), low)
 
@@ -79,7 +79,7 @@ def test_the_series_ends_above_the_lowest_useful_value(subject, rng):
 
     Compare the next value with `low` before you append it.
     """
-    T = drawn(rng)
+    T = draw_inputs(rng)
     for low in (80.0, float(rng.integers(20, 40))):
         same_series(subject, T, clear_start(rng, T, low), low, what=f"the series down to {low:g}")
 
@@ -92,10 +92,10 @@ def test_the_series_ends_where_t_is_not_known(subject, rng):
 
     Test whether the last value lies between the first and the last pixel value with a known T.
     """
-    T = drawn(rng, first=int(rng.integers(90, 120)), last=240)
+    T = draw_inputs(rng, first=int(rng.integers(90, 120)), last=240)
     same_series(subject, T, clear_start(rng, T, 12.0), 12.0)
-    came = numbers(subject.descend(T, 247.5, low=12.0), what="a series that starts above T")
-    same(came, [247.5], 1e-9, what="a series that starts where T is not known")
+    answer = numbers(subject.descend(T, 247.5, low=12.0), what="a series that starts above T")
+    same(answer, [247.5], 1e-9, what="a series that starts where T is not known")
 
 
 @points(2)

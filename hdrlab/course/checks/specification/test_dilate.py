@@ -7,7 +7,7 @@ from hdrlab.course.checks.compare import points, same
 from hdrlab.radiance.deghosting import regions
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a mask with a few single pixels and a bar, and a margin."""
     mask = rng.uniform(size=(40, 50)) < 0.004
     mask[int(rng.integers(5, 30)), 8:20] = True
@@ -35,7 +35,7 @@ def test_pixels_within_the_margin_are_marked(subject, rng):
 
     Mark every pixel that is at most `margin` away from a pixel of the mask.
     """
-    mask, margin = drawn(rng)
+    mask, margin = draw_inputs(rng)
     near = distance_transform_edt(~mask) <= margin
     widened = regions.dilate(mask, margin)
     # another check tests the holes
@@ -59,8 +59,8 @@ def test_the_inside_of_an_outline_is_marked(subject, rng):
     ring[6:8, 18:20] = False
     margin = int(rng.integers(3, 5))
     for mask in (closed, ring):
-        came = subject.dilate(mask, margin)
-        same(came, regions.dilate(mask, margin), 0, what="the mask of a ring", picture=True)
+        answer = subject.dilate(mask, margin)
+        same(answer, regions.dilate(mask, margin), 0, what="the mask of a ring", picture=True)
     dots, filled = with_a_hole_at_a_corner(rng)
     same(subject.dilate(dots, 1), filled, 0, what="the mask of dots", picture=True)
 

@@ -7,7 +7,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     return np.exp(1.5 * rng.standard_normal((20, 30)) - 1).astype(np.float32)
 
 
@@ -19,7 +19,7 @@ def test_without_a_white_Ld_is_Lm_over_one_plus_adaptation(subject, rng):
 
     For the global operator, the adaptation is Lm itself.
     """
-    Lm = drawn(rng)
+    Lm = draw_inputs(rng)
     same(subject.display(Lm, Lm), Lm / (1 + Lm), 1e-4, what="Ld", picture=True)
 
 
@@ -31,7 +31,7 @@ def test_white_becomes_1_and_brighter_pixels_are_clipped(subject, rng):
 
     Use the square of white, and clip larger values at 1.
     """
-    Lm = drawn(rng)
+    Lm = draw_inputs(rng)
     white = float(rng.uniform(1.5, 6))
     Lm[0, :5] = white * np.array([1, 1.5, 2, 10, 100])
     expected = np.minimum(Lm * (1 + Lm / white**2) / (1 + Lm), 1)
@@ -46,7 +46,7 @@ def test_the_neighborhood_goes_below_the_fraction_bar(subject, rng):
 
     Ld = Lm / (1 + adaptation), where adaptation is the second argument.
     """
-    Lm = drawn(rng)
+    Lm = draw_inputs(rng)
     around = np.full_like(Lm, np.exp(rng.uniform(-1, 1)))
     same(
         subject.display(Lm, around), np.minimum(Lm / (1 + around), 1), 1e-4, what="Ld", picture=True
@@ -62,7 +62,7 @@ def test_white_and_the_neighborhood_work_together(subject, rng):
 
     Compute the whole formula with both arguments, and take the minimum of it and 1.
     """
-    Lm = drawn(rng)
+    Lm = draw_inputs(rng)
     around = np.exp(1.5 * rng.standard_normal(Lm.shape)).astype(np.float32)
     white = float(rng.uniform(1.5, 4))
     Lm[:3] = white * rng.uniform(1, 1.5, Lm[:3].shape)

@@ -59,8 +59,8 @@ def test_a_color_in_the_shade_is_as_far_as_in_the_light(subject, rng):
     gaussian = draw_skin(rng)
     Z = draw_colors(rng, 50)
     shaded = Z * rng.uniform(0.2, 0.9, (50, 1))
-    came = np.asarray(subject.distance(shaded, gaussian))
-    same(came, skin.distance(Z, gaussian), TOLERANCE * 50, what="d in the shade")
+    answer = np.asarray(subject.distance(shaded, gaussian))
+    same(answer, skin.distance(Z, gaussian), TOLERANCE * 50, what="d in the shade")
 
 
 @points(1, needs="test_the_distance_is_measured_in_standard_deviations")

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return T, F, F_new, S, S_new. No speed equals another one or is twice another one."""
     F, F_new = rng.uniform(1.4, 22, 2)
     S, S_new = np.array([100, 160]) * 2.0 ** rng.integers(0, 6, 2)
@@ -21,7 +21,7 @@ def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
     T' = T (F' / F)^2.
     """
     same(subject.equivalent_time(1 / 64, 8.0, 16.0), 1 / 16, 1e-6, what="T'")
-    T, F, F_new, _, _ = drawn(rng)
+    T, F, F_new, _, _ = draw_inputs(rng)
     same(
         subject.equivalent_time(T, F, F_new) / T,
         (F_new / F) ** 2,
@@ -38,9 +38,9 @@ def test_twice_the_speed_needs_half_the_time(subject, rng):
 
     Multiply by S / S'.
     """
-    T, F, _, S, S_new = drawn(rng)
-    came = subject.equivalent_time(T, F, F, S=S, S_new=2 * S_new)
-    same(came / T, S / (2 * S_new), 1e-4 * S / S_new, what="T' / T")
+    T, F, _, S, S_new = draw_inputs(rng)
+    answer = subject.equivalent_time(T, F, F, S=S, S_new=2 * S_new)
+    same(answer / T, S / (2 * S_new), 1e-4 * S / S_new, what="T' / T")
 
 
 @points(3)
@@ -51,7 +51,7 @@ def test_changing_the_settings_back_restores_the_time(subject, rng):
 
     T' = T (F' / F)^2 S / S'.
     """
-    T, F, F_new, S, S_new = drawn(rng)
+    T, F, F_new, S, S_new = draw_inputs(rng)
     there = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new))
     exposure = T * S / F**2
     same(

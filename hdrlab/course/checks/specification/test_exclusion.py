@@ -15,8 +15,10 @@ def test_every_pixel_is_either_compared_or_not(subject, rng):
     A comparison of arrays gives an array of bool.
     """
     Y = rng.integers(0, 256, (6, 9), dtype=np.uint8)
-    came = finite(subject.exclusion(Y, 120), (6, 9), what="where Y is compared")
-    require(np.isin(came, [0, 1]).all(), f"expected True or False, got values up to {came.max():g}")
+    answer = finite(subject.exclusion(Y, 120), (6, 9), what="where Y is compared")
+    require(
+        np.isin(answer, [0, 1]).all(), f"expected True or False, got values up to {answer.max():g}"
+    )
 
 
 @points(4)

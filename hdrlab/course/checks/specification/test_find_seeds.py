@@ -7,7 +7,7 @@ from hdrlab.course.checks.compare import points, same
 from hdrlab.radiance.deghosting import regions
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a score with wide and thin areas above 1, some of them at the border."""
     score = 1 + 3 * gaussian_filter(rng.standard_normal((40, 50)), 2)
     score[int(rng.integers(10, 30)), :] = 2
@@ -29,7 +29,7 @@ def test_squares_that_are_entirely_above_1_are_marked(subject, rng):
     Mark all nine pixels of each such square, and no other pixel.
     """
     for _ in range(3):
-        score = drawn(rng)
+        score = draw_inputs(rng)
         same(subject.find_seeds(score), regions.find_seeds(score), 0, what="the mask", picture=True)
 
 

@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.radiance import scales
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return radiance I (N, 3), each channel in a unit of its own, and the pixel values M (N, 3)."""
     M = rng.uniform(0.1, 0.5, (80, 3))
     return M * rng.uniform(0.4, 2.5, 3), M
@@ -30,8 +30,8 @@ def distorted(radiance, M, *, rng):
 def same_scales(subject, radiance, M, *, what="k"):
     """Compare k with the library's, to half a percent."""
     k = scales.fit_channel_scales(radiance, M)
-    came = finite(subject.fit_channel_scales(radiance, M), (3,), what=what).astype(float)
-    same(came / k, np.ones(3), 5e-3, what=f"{what} / the best k")
+    answer = finite(subject.fit_channel_scales(radiance, M), (3,), what=what).astype(float)
+    same(answer / k, np.ones(3), 5e-3, what=f"{what} / the best k")
 
 
 @points(5)
@@ -42,7 +42,7 @@ def test_the_scales_of_a_camera_that_keeps_chromaticity_are_exact(subject, rng):
 
     k multiplies the radiance I. Divide all three scales by that of green, so that k[1] is 1.
     """
-    radiance, M = drawn(rng)
+    radiance, M = draw_inputs(rng)
     same_scales(subject, radiance, M)
 
 
@@ -57,7 +57,9 @@ def test_the_scales_minimize_the_distance_of_the_directions(subject, rng):
     scipy.optimize.least_squares or scipy.optimize.minimize. Search for ln k, so that k stays positive.
     """
     for _ in range(2):
-        same_scales(subject, *distorted(*drawn(rng), rng=rng), what="k of a camera with errors")
+        same_scales(
+            subject, *distorted(*draw_inputs(rng), rng=rng), what="k of a camera with errors"
+        )
 
 
 @points(4)
@@ -68,7 +70,7 @@ def test_a_pixel_counts_whatever_its_brightness_is(subject, rng):
 
     Divide each row of M, and each row of k I, by its length.
     """
-    radiance, M = distorted(*drawn(rng), rng=rng)
+    radiance, M = distorted(*draw_inputs(rng), rng=rng)
     M = M * np.where(np.arange(len(M)) % 2, 1.0, 0.1)[:, None]
     same_scales(subject, radiance, M, what="k with some pixels ten times darker")
 
@@ -81,7 +83,7 @@ def test_another_unit_of_a_channel_changes_its_scale_alone(subject, rng):
 
     The result may depend on the radiance only through k I.
     """
-    radiance, M = distorted(*drawn(rng), rng=rng)
+    radiance, M = distorted(*draw_inputs(rng), rng=rng)
     before = finite(subject.fit_channel_scales(radiance, M), (3,), what="k").astype(float)
     after = finite(subject.fit_channel_scales(radiance / [3, 1, 1], M), (3,), what="k").astype(
         float

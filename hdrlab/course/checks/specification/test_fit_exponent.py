@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import points, same
 from hdrlab.response import mann
 
 
-def drawn(rng, *, alpha=0.0, ratios=(0.5, 0.25)):
+def draw_inputs(rng, *, alpha=0.0, ratios=(0.5, 0.25)):
     """Return gamma and pairs (series, R) of a camera with the response alpha + beta I^gamma."""
     gamma = rng.uniform(0.35, 0.9)
     ladders = []
@@ -36,7 +36,7 @@ def test_the_exponent_of_one_series_is_its_slope(subject, rng):
 
     Fit a straight line to ln M over k ln R, k = 0, 1, 2 ... ln R is negative.
     """
-    gamma, ladders = drawn(rng, ratios=(0.5,))
+    gamma, ladders = draw_inputs(rng, ratios=(0.5,))
     same(subject.fit_exponent(ladders[:1], alpha=0.0), gamma, 1e-3 * gamma, what="gamma")
 
 
@@ -48,7 +48,7 @@ def test_all_series_share_one_slope_and_none_an_intercept(subject, rng):
 
     gamma = sum of (x - mean x)(y - mean y) / sum of (x - mean x)^2, both sums over all series.
     """
-    _, ladders = drawn(rng)
+    _, ladders = draw_inputs(rng)
     same_exponent(subject, ladders, what="gamma of six series")
 
 
@@ -78,5 +78,5 @@ def test_alpha_is_subtracted_before_the_logarithm(subject, rng):
     Subtract alpha from the series, and then take the logarithm.
     """
     alpha = float(rng.uniform(6, 12))
-    gamma, ladders = drawn(rng, alpha=alpha)
+    gamma, ladders = draw_inputs(rng, alpha=alpha)
     same_exponent(subject, ladders, alpha=alpha, what="gamma with alpha above 0")

@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, parts, points, same
 from hdrlab.response import space
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return curves (C, n) and a number of components, with variances that are far apart."""
     x = np.linspace(0, 1, 40)
     gammas = np.exp(rng.normal(-0.5, 0.4, (14, 1)))
@@ -36,7 +36,7 @@ def test_the_mean_is_that_of_all_curves(subject, rng):
 
     mean[i] is the mean of curves[:, i].
     """
-    curves, count = drawn(rng)
+    curves, count = draw_inputs(rng)
     same(answer(subject, curves, count)[0], curves.mean(axis=0), 1e-5, what="mean", kind="curve")
 
 
@@ -48,7 +48,7 @@ def test_the_components_span_the_directions_of_largest_spread(subject, rng):
 
     H is the first rows of V^T, with curves - mean = U S V^T. numpy returns V^T, not V.
     """
-    curves, count = drawn(rng)
+    curves, count = draw_inputs(rng)
     H = space.fit_space(curves, count).H
     came = answer(subject, curves, count)[1]
     same(came.T @ came, H.T @ H, 1e-4, what="H^T H", picture=True)
@@ -62,7 +62,7 @@ def test_each_component_has_its_place_and_length_1(subject, rng):
 
     Each row must be the library's, or its negative.
     """
-    curves, count = drawn(rng)
+    curves, count = draw_inputs(rng)
     H = space.fit_space(curves, count).H
     came = answer(subject, curves, count)[1]
     same(np.abs(came @ H.T), np.eye(count), 1e-3, what="the size of H times the right H^T")
@@ -76,6 +76,6 @@ def test_the_spread_is_the_standard_deviation_of_the_coefficients(subject, rng):
 
     sd = S / sqrt(C), with C curves.
     """
-    curves, count = drawn(rng)
+    curves, count = draw_inputs(rng)
     sd = space.fit_space(curves, count).sd
     same(answer(subject, curves, count)[2] / sd, np.ones(count), 1e-3, what="sd / the right sd")

@@ -9,7 +9,7 @@ from hdrlab.tonemap import durand
 INNER = np.s_[10:-10, 10:-10]
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a mean in which some pixels differ from their neighborhood, and k, which is small
     at these pixels.
     """
@@ -33,12 +33,12 @@ def test_uncertain_pixels_are_blended_with_the_blurred_mean(subject, rng):
     2 pixels.
     """
     for sigma_s in (6.0, float(rng.uniform(4, 9))):
-        mean, k = drawn(rng)
+        mean, k = draw_inputs(rng)
         base = durand.fix_uncertain(mean, k, sigma_s=sigma_s)
-        came = subject.fix_uncertain(mean, k, sigma_s=sigma_s)
+        answer = subject.fix_uncertain(mean, k, sigma_s=sigma_s)
         inner = np.zeros(base.shape, bool)
         inner[INNER] = True
-        same(came, base, 0.02, what="the base", picture=True, where=inner)
+        same(answer, base, 0.02, what="the base", picture=True, where=inner)
 
 
 @points(2, needs="test_uncertain_pixels_are_blended_with_the_blurred_mean")
@@ -49,9 +49,9 @@ def test_certain_pixels_keep_their_mean(subject, rng):
 
     Clip u at 1. A larger u would sharpen the base.
     """
-    mean, k = drawn(rng)
-    came = subject.fix_uncertain(mean, k, sigma_s=6.0)
-    same(came, mean, 1e-4, what="the base of certain pixels", picture=True, where=k > 150)
+    mean, k = draw_inputs(rng)
+    answer = subject.fix_uncertain(mean, k, sigma_s=6.0)
+    same(answer, mean, 1e-4, what="the base of certain pixels", picture=True, where=k > 150)
 
 
 @points(2)
@@ -62,7 +62,7 @@ def test_a_pixel_without_similar_neighbors_takes_the_blur(subject, rng):
 
     Clip u at 0.
     """
-    mean, k = drawn(rng)
+    mean, k = draw_inputs(rng)
     k[...] = rng.uniform(0.5, 1, k.shape)
     smooth = gaussian_filter(mean.astype(np.float64), durand.NEAR)[INNER]
     same(

@@ -8,16 +8,16 @@ from hdrlab.enhance import battiato
 SHAPE = (24, 30)
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a block with noise, steps and spots."""
     y, x = np.indices(SHAPE)
     block = 60 + 50 * (x > rng.integers(8, 20)) + 40 * (y > rng.integers(6, 16))
     return block + 90 * (rng.random(SHAPE) < 0.05) + np.rint(rng.normal(0, 2, SHAPE))
 
 
-def same_focus(subject, block, what="F", **knobs):
-    F = battiato.focus(block, **knobs)
-    same(subject.focus(block, **knobs), F, 1e-4 * F, what=what)
+def same_focus(subject, block, what="F", **options):
+    F = battiato.focus(block, **options)
+    same(subject.focus(block, **options), F, 1e-4 * F, what=what)
 
 
 @points(3)
@@ -29,7 +29,7 @@ def test_without_noise_all_edges_count(subject, rng):
 
     Take the mean of its absolute value over all pixels of the block.
     """
-    same_focus(subject, drawn(rng), noise=0.0, what="F for a noise of 0")
+    same_focus(subject, draw_inputs(rng), noise=0.0, what="F for a noise of 0")
 
 
 @points(4)
@@ -41,7 +41,7 @@ def test_values_that_noise_explains_count_as_0(subject, rng):
     Set them to 0, and divide by the number of all pixels of the block.
     """
     for noise in (20.0, float(rng.uniform(45, 65))):
-        same_focus(subject, drawn(rng), noise=noise, what=f"F for a noise of {noise:.3g}")
+        same_focus(subject, draw_inputs(rng), noise=noise, what=f"F for a noise of {noise:.3g}")
 
 
 @points(3)

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import points, same
 
 
-def drawn(rng, channels=()):
+def draw_inputs(rng, channels=()):
     # float16 values: no byte at either end of the data is white space
     return (10.0 ** rng.uniform(-3, 3, (4, 6, *channels))).astype(np.float16).astype(np.float32)
 
@@ -37,7 +37,7 @@ def test_the_first_row_of_the_file_is_the_bottom_row(subject, rng):
 
     Reverse the rows: E[::-1].
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     same(subject.from_bytes(file(E)), E, 1e-6 * E.max(), what="E", picture=True)
 
 
@@ -49,7 +49,7 @@ def test_a_color_map_has_three_channels(subject, rng):
 
     Reshape to (height, width, 3).
     """
-    E = drawn(rng, (3,))
+    E = draw_inputs(rng, (3,))
     same(subject.from_bytes(file(E)), E, 1e-6 * E.max(), what="E")
 
 
@@ -61,7 +61,7 @@ def test_a_positive_scale_is_big_endian(subject, rng):
 
     Use np.frombuffer with '>f4' if the scale is positive.
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     same(subject.from_bytes(file(E, "1.0", ">f4")), E, 1e-6 * E.max(), what="E", picture=True)
 
 
@@ -84,7 +84,7 @@ def test_any_white_space_separates_the_header(subject, rng):
 
     Search for the parts, not for lines. A regular expression is one way: rb"(P[Ff])\\s+(\\d+)\\s+...".
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     for gap in (b" ", b"\t", b" \n"):
         what = f"E of a file with {gap!r} in the header"
         same(subject.from_bytes(file(E, gap=gap)), E, 1e-6 * E.max(), what=what)

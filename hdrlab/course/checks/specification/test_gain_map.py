@@ -4,15 +4,17 @@ from hdrlab.core import gainmap
 from hdrlab.course.checks.compare import points, same
 
 
-def agree(subject, rng, stops, low, high, *, black=0.0, **knobs):
+def agree(subject, rng, stops, low, high, *, black=0.0, **options):
     """Compare the gain maps of an image and a scene that is brighter by a random number of
     stops; a fraction of both is black.
     """
     sdr = rng.uniform(0.1, 0.9, (12, 16, 3))
     hdr = sdr * 2 ** rng.uniform(*stops, sdr.shape)
     sdr, hdr = (one * (rng.random(one.shape) >= black) for one in (sdr, hdr))
-    came, expected = (f(sdr, hdr, low, high, **knobs) for f in (subject.gain_map, gainmap.gain_map))
-    same(came, expected, 1e-3, what="g", picture=True)
+    answer, expected = (
+        f(sdr, hdr, low, high, **options) for f in (subject.gain_map, gainmap.gain_map)
+    )
+    same(answer, expected, 1e-3, what="g", picture=True)
 
 
 @points(6)

@@ -21,7 +21,7 @@ def samples(rng, N=50, P=5, *, response=None, noise=1.0, light=(-3, 3)):
     return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
 
 
-def asked(subject, Z, B, smoothness, w):
+def get_answer(subject, Z, B, smoothness, w):
     """Return g and lE of a subject, shifted to g[n // 2] = 0, because a constant in both is
     free.
     """
@@ -42,7 +42,7 @@ SMALL_INPUTS = [
 
 def check_one_input(subject, Z, B, smoothness, w):
     """Compare g and lE with those of the solution."""
-    g, lE = asked(subject, Z, B, smoothness, w)
+    g, lE = get_answer(subject, Z, B, smoothness, w)
     truth = debevec.gsolve(Z, B, smoothness, w)
     gauge = truth.g[len(w) // 2]
     same(g, truth.g - gauge, 0.02, what="g")
@@ -57,7 +57,7 @@ def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
     Split the solution x at n: g = x[:n] and lE = x[n:].
     """
     Z, B = samples(rng, N=40)
-    asked(subject, Z, B, 30.0, HAT)
+    get_answer(subject, Z, B, 30.0, HAT)
 
 
 @points(4)
@@ -73,7 +73,7 @@ def test_the_curve_of_a_camera_is_recovered(subject, rng):
     Z, B = samples(
         rng, N=200, response=response, noise=0, light=(-2.4, 0.3)
     )  # some of them clipped
-    g, _ = asked(subject, Z, B, 10.0, HAT)
+    g, _ = get_answer(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
 
@@ -88,7 +88,7 @@ def test_g_and_lE_minimize_the_sum_of_squares(subject, rng):
     Count your rows: N P for the data, one for the gauge, n - 2 for smoothness.
     """
     Z, B = samples(rng)
-    g, lE = asked(subject, Z, B, 30.0, HAT)
+    g, lE = get_answer(subject, Z, B, 30.0, HAT)
     truth = debevec.gsolve(Z, B, 30.0, HAT)
     same(g, truth.g, 0.02, what="g")
     same(lE, truth.lE, 0.02, what="lE")
@@ -106,13 +106,13 @@ def test_more_smoothness_gives_a_straighter_curve_and_a_worse_fit(subject, rng):
     bends = []
     misses = []
     for smoothness in (1.0, 10.0, 100.0, 1000.0):
-        g, lE = asked(subject, Z, B, smoothness, HAT)
+        g, lE = get_answer(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    said = f"sum (w g'')^2: expected it to decrease as lambda grows, got {_few(bends)}"
-    require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], said)
-    said = f"sum (w (g - lE - B))^2: expected it to increase as lambda grows, got {_few(misses)}"
-    require(np.all(np.diff(misses) > 0), said)
+    message = f"sum (w g'')^2: expected it to decrease as lambda grows, got {_few(bends)}"
+    require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], message)
+    message = f"sum (w (g - lE - B))^2: expected it to increase as lambda grows, got {_few(misses)}"
+    require(np.all(np.diff(misses) > 0), message)
 
 
 def _few(numbers):
@@ -129,8 +129,10 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """
     Z, B = samples(rng, N=40)
     order = rng.permutation(len(B))
-    g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
-    same(g, asked(subject, Z, B, 30.0, HAT)[0], 0.02, what="g with the frames in another order")
+    g, _ = get_answer(subject, Z[:, order], B[order], 30.0, HAT)
+    same(
+        g, get_answer(subject, Z, B, 30.0, HAT)[0], 0.02, what="g with the frames in another order"
+    )
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")
@@ -142,7 +144,9 @@ def test_another_unit_of_time_changes_lE_but_not_g(subject, rng):
     The right-hand side is w B[j]. Use B as it is, not its logarithm or its exponential.
     """
     Z, B = samples(rng, N=40)
-    (g, lE), (moved, less) = (asked(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0)))
+    (g, lE), (moved, less) = (
+        get_answer(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0))
+    )
     same(moved, g, 0.02, what="g with times in milliseconds")
     same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
@@ -156,8 +160,8 @@ def test_any_number_of_levels_works(subject, rng):
     The unknowns are g (n,) followed by lE (N,): n + N columns.
     """
     Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
-    g, _ = asked(subject, Z, B, 10.0, HAT)
-    few, _ = asked(subject, Z // 16, B, 1.0, weights.hat(16))
+    g, _ = get_answer(subject, Z, B, 10.0, HAT)
+    few, _ = get_answer(subject, Z // 16, B, 1.0, weights.hat(16))
     fine = g[8::16] - g[136]  # g in the middle of each of the 16 levels
     same(
         few[4:12],

@@ -10,7 +10,7 @@ from hdrlab.course.checks.compare import finite, points, same
 SHAPE = (36, 48)
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a guide of two walls with texture, another image of the same walls, and the
     parameters.
     """
@@ -38,10 +38,10 @@ def test_an_image_is_smoothed_along_its_guide(subject, rng):
 
     All means are over (2 r + 1) x (2 r + 1) pixels, and cov(I, p) = mean(I p) - mean(I) mean(p).
     """
-    guide, p, knobs = drawn(rng)
-    expected = guided(guide, p, **knobs)
-    where = inside(knobs["radius"])
-    same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, options = draw_inputs(rng)
+    expected = guided(guide, p, **options)
+    where = inside(options["radius"])
+    same(subject.guided(guide, p, **options), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(4)
@@ -53,10 +53,10 @@ def test_an_image_that_guides_itself_keeps_its_edges(subject, rng):
 
     cov(I, I) is the variance of I.
     """
-    guide, _, knobs = drawn(rng)
-    expected = guided(guide, **knobs)
-    where = inside(knobs["radius"])
-    same(subject.guided(guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, _, options = draw_inputs(rng)
+    expected = guided(guide, **options)
+    where = inside(options["radius"])
+    same(subject.guided(guide, **options), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(1, needs="test_an_image_is_smoothed_along_its_guide")
@@ -67,11 +67,11 @@ def test_a_large_epsilon_leaves_the_mean_of_means(subject, rng):
 
     Average b, too: the result is a mean of means.
     """
-    guide, p, knobs = drawn(rng)
-    knobs["epsilon"] = 1e6
-    expected = guided(guide, p, **knobs)
-    where = inside(knobs["radius"])
-    same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, options = draw_inputs(rng)
+    options["epsilon"] = 1e6
+    expected = guided(guide, p, **options)
+    where = inside(options["radius"])
+    same(subject.guided(guide, p, **options), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(2)
@@ -82,6 +82,8 @@ def test_scaling_and_shifting_p_scales_and_shifts_q(subject, rng):
 
     A constant added to p goes into b. A factor of p goes into a and b.
     """
-    guide, p, knobs = drawn(rng)
-    q, again = (finite(subject.guided(guide, x, **knobs), SHAPE, what="q") for x in (p, 2 * p + 3))
-    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(knobs["radius"]))
+    guide, p, options = draw_inputs(rng)
+    q, again = (
+        finite(subject.guided(guide, x, **options), SHAPE, what="q") for x in (p, 2 * p + 3)
+    )
+    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(options["radius"]))

@@ -7,7 +7,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, require, same
 
 
-def asked(subject, n):
+def get_answer(subject, n):
     """Return w (n,) divided by its largest value."""
     w = finite(subject.hat(n), (n,), what="w").astype(float)
     require(w.max() > 0, f"w: expected weights above 0, got none above {w.max():.3g}")
@@ -21,7 +21,7 @@ def hat(n):
 
 def check_one_input(subject, n):
     """Compare the weights of n levels, as the checks below do."""
-    same(asked(subject, n), hat(n), 1e-3, what="w")
+    same(get_answer(subject, n), hat(n), 1e-3, what="w")
 
 
 # of an 8-bit photo: only the last check asks for another number
@@ -49,13 +49,13 @@ def test_the_weight_is_largest_in_the_middle_and_falls_to_both_ends(subject, rng
     w(z) = z below the middle, and w(z) = n - 1 - z above it.
     """
     n = LEVEL_COUNT
-    w = asked(subject, n)
+    w = get_answer(subject, n)
     steps = np.diff(w) * np.where(
         np.arange(n - 1) < n // 2, 1, -1
     )  # the one in the middle may be 0
     wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
-    said = f"w: expected weights that rise to the middle and fall after it; yours do not at level {wrong}"
-    require(wrong == n, said, expected=hat(n), came=w, kind="curve")
+    message = f"w: expected weights that rise to the middle and fall after it; yours do not at level {wrong}"
+    require(wrong == n, message, expected=hat(n), came=w, kind="curve")
     same(w, hat(n), 0.02, what="w", kind="curve")  # another check tests the ends
 
 
@@ -68,7 +68,7 @@ def test_clipped_levels_have_weight_0(subject, rng):
     w(0) = w(n - 1) = 0. Do not add 1.
     """
     n = LEVEL_COUNT
-    w = asked(subject, n)
+    w = get_answer(subject, n)
     same(w[[0, -1]], [0, 0], 1e-6, what=f"the weights of levels 0 and {n - 1}")
 
 
@@ -81,4 +81,4 @@ def test_any_number_of_levels_works(subject, rng):
     Use z = arange(n); the highest pixel value is n - 1.
     """
     for n in (2 * int(rng.integers(10, 60)), 4096):
-        same(asked(subject, n), hat(n), 1e-3, what=f"w of {n} levels", kind="curve")
+        same(get_answer(subject, n), hat(n), 1e-3, what=f"w of {n} levels", kind="curve")

@@ -9,7 +9,7 @@ from hdrlab.response import robertson
 HAT = weights.hat()
 
 
-def drawn(rng, N=300, P=4):
+def draw_inputs(rng, N=300, P=4):
     """Return Z (N, P), t (P,) and an increasing f^-1 (256,)."""
     Z = rng.integers(0, 256, (N, P)).astype(np.intp)
     return Z, rng.uniform(0.1, 2, P), np.sort(rng.uniform(0.01, 2, 256))
@@ -22,7 +22,7 @@ def test_every_sample_has_an_irradiance(subject, rng):
 
     The result is E (N,).
     """
-    Z, t, f_inv = drawn(rng)
+    Z, t, f_inv = draw_inputs(rng)
     finite(subject.irradiance(Z.clip(20, 230), t, f_inv, HAT), (300,), what="E")
 
 
@@ -34,7 +34,7 @@ def test_it_is_the_weighted_mean_of_the_slides(subject, rng):
 
     E = sum_j w f^-1(Z_ij) t_j / sum_j w t_j^2. The denominator has the square of the time.
     """
-    Z, t, f_inv = drawn(rng)
+    Z, t, f_inv = draw_inputs(rng)
     truth = robertson.irradiance(Z, t, f_inv, HAT)
     seen = HAT[Z].sum(axis=1) > 0.05
     same(subject.irradiance(Z, t, f_inv, HAT), truth, 2e-3 * np.nanmax(truth), what="E", where=seen)
@@ -63,7 +63,7 @@ def test_twice_the_time_gives_half_the_irradiance(subject, rng):
 
     The numerator has t, and the denominator has t^2.
     """
-    Z, t, f_inv = drawn(rng)
+    Z, t, f_inv = draw_inputs(rng)
     truth = robertson.irradiance(Z, t, f_inv, HAT)
     seen = HAT[Z].sum(axis=1) > 0.05
     same(
@@ -82,7 +82,7 @@ def test_a_sample_without_any_weight_is_nan(subject, rng):
 
     Return NaN for it. A 0 would look like a dark spot.
     """
-    _, t, f_inv = drawn(rng)
+    _, t, f_inv = draw_inputs(rng)
     Z = np.array([[0, 0, 255, 255], [100, 150, 200, 250]])
     expected = [np.nan, robertson.irradiance(Z[1:], t, f_inv, HAT)[0]]
     same(subject.irradiance(Z, t, f_inv, HAT), expected, 1e-3 * expected[1], what="E")

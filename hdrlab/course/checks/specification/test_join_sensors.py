@@ -10,7 +10,7 @@ SHAPE = (34, 42)
 TOLERANCE = 1e-4
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return B, D and where B is full: a spot of full pixels, and single ones."""
     y, x = np.indices(SHAPE)
     E = 1 + 0.5 * gaussian_filter(rng.standard_normal(SHAPE), 2)
@@ -36,7 +36,7 @@ def answer(subject, B, D, full):
 
 
 def same_case(subject, rng, number):
-    B, D, full = drawn(rng)
+    B, D, full = draw_inputs(rng)
     E, case = splitter.join_sensors(B, D, full)
     where = inner(SHAPE) & (case == number)
     require(where.any(), "the drawn photo lacks this case")
@@ -96,7 +96,7 @@ def test_each_pixel_has_its_case(subject, rng):
 
     1 and 2: not full; 3 and 4: full. In 2 and 3, some pixels of the window are full.
     """
-    B, D, full = drawn(rng)
+    B, D, full = draw_inputs(rng)
     case = splitter.join_sensors(B, D, full)[1]
     came = answer(subject, B, D, full)[1]
     same(came, case, 0, what="the cases", where=inner(SHAPE), picture=True)
@@ -110,7 +110,7 @@ def test_at_the_border_the_last_pixels_go_on(subject, rng):
 
     scipy.ndimage.uniform_filter(..., 5, mode="nearest"), or np.pad(..., 2, mode="edge").
     """
-    B, D, full = drawn(rng)
+    B, D, full = draw_inputs(rng)
     full[:4, :7] = True
     full[-1, 10:20] = True
     E = splitter.join_sensors(B, D, full)[0]

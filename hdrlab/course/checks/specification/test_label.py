@@ -8,7 +8,7 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.radiance.deghosting import regions
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a mask of several parts with an empty first row."""
     mask = rng.uniform(size=(24, 32)) < 0.3
     mask[0] = False
@@ -23,8 +23,8 @@ def numbered(labels):
 
 def compared(subject, mask, what):
     """Compare which pixels share a label."""
-    came = finite(subject.label(mask), mask.shape, what="labels")
-    same(numbered(came), numbered(regions.label(mask)), 0, what=what, picture=True)
+    answer = finite(subject.label(mask), mask.shape, what="labels")
+    same(numbered(answer), numbered(regions.label(mask)), 0, what=what, picture=True)
 
 
 def check_one_input(subject, mask):
@@ -41,7 +41,7 @@ def test_connected_pixels_share_a_label(subject, rng):
 
     scipy.ndimage.label takes the neighborhood as its second argument.
     """
-    compared(subject, drawn(rng), "the parts, numbered row by row")
+    compared(subject, draw_inputs(rng), "the parts, numbered row by row")
 
 
 @points(3, needs="test_connected_pixels_share_a_label")
@@ -64,8 +64,8 @@ def test_labels_are_1_to_r_and_0_elsewhere(subject, rng):
 
     Use 0 where the mask is False.
     """
-    mask = drawn(rng)
+    mask = draw_inputs(rng)
     count = int(regions.label(mask).max())
-    came = finite(subject.label(mask), mask.shape, what="labels")
-    same(np.unique(came), np.arange(count + 1), 0, what="the set of labels")
-    same(came[~mask], np.zeros(np.count_nonzero(~mask)), 0, what="the labels outside the mask")
+    answer = finite(subject.label(mask), mask.shape, what="labels")
+    same(np.unique(answer), np.arange(count + 1), 0, what="the set of labels")
+    same(answer[~mask], np.zeros(np.count_nonzero(~mask)), 0, what="the labels outside the mask")

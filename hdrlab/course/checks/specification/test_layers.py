@@ -8,16 +8,16 @@ from hdrlab.course.checks.compare import finite, parts, points, require, same
 SIGMA = {"sigma_s": 4.0, "sigma_r": 0.3}  # not the default
 
 
-def drawn(rng, shape=(40, 56), texture=0.12):
+def draw_inputs(rng, shape=(40, 56), texture=0.12):
     """Return log luminance of two walls in different light, both with texture."""
     x = np.arange(shape[1])
     light = np.where(x < rng.integers(20, 36), 0.0, float(rng.choice([-1, 1]) * rng.uniform(2, 3)))
     return (light + texture * rng.standard_normal(shape)).astype(np.float32)
 
 
-def asked(subject, lL, **knobs):
+def get_answer(subject, lL, **options):
     """Return base and detail."""
-    base, detail = parts(subject.layers(lL, **(knobs or SIGMA)), 2, what="base and detail")
+    base, detail = parts(subject.layers(lL, **(options or SIGMA)), 2, what="base and detail")
     return finite(base, lL.shape, what="the base"), finite(detail, lL.shape, what="the detail")
 
 
@@ -34,11 +34,11 @@ def test_the_layers_add_up_to_the_image(subject, rng):
 
     detail = lL - base.
     """
-    lL = drawn(rng)
-    base, detail = asked(subject, lL)
+    lL = draw_inputs(rng)
+    base, detail = get_answer(subject, lL)
     same(base + detail, lL, 1e-3, what="base + detail", picture=True)
-    said = "the detail: expected the texture of the walls, got almost none"
-    require(detail.std() > 0.01, said, came=detail, kind="image")
+    message = "the detail: expected the texture of the walls, got almost none"
+    require(detail.std() > 0.01, message, came=detail, kind="image")
 
 
 @points(5)
@@ -49,9 +49,9 @@ def test_the_base_is_the_bilateral_filter(subject, rng):
 
     Divide by the sum of the weights. The exponents are -d^2 / (2 sigma^2).
     """
-    lL = drawn(rng)
+    lL = draw_inputs(rng)
     found = bilateral(lL, **SIGMA)
-    base, _ = asked(subject, lL)
+    base, _ = get_answer(subject, lL)
     same(base, found.mean, 0.02, what="the base", picture=True, where=found.k > 20)
 
 
@@ -63,8 +63,8 @@ def test_a_strong_edge_stays_in_the_base(subject, rng):
 
     A neighbor that differs by much more than sigma_r must have almost no weight.
     """
-    lL = drawn(rng, texture=0.0)
-    base, detail = asked(subject, lL)
+    lL = draw_inputs(rng, texture=0.0)
+    base, detail = get_answer(subject, lL)
     same(base, lL, 0.03, what="the base of two uniform walls", picture=True)
     same(detail, np.zeros(lL.shape), 0.03, what="the detail of two uniform walls", picture=True)
 
@@ -77,9 +77,9 @@ def test_more_light_changes_the_base_but_not_the_detail(subject, rng):
 
     Do not take a logarithm; lL is one already.
     """
-    lL = drawn(rng)
-    base, detail = asked(subject, lL)
-    moved, same_detail = asked(subject, lL + np.float32(1.3))
+    lL = draw_inputs(rng)
+    base, detail = get_answer(subject, lL)
+    moved, same_detail = get_answer(subject, lL + np.float32(1.3))
     same(
         moved - base,
         np.full(lL.shape, 1.3),

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng, M=9):
+def draw_inputs(rng, M=9):
     """Return S (M,) and V (M,) on a line through the dark pair, which comes first."""
     S = np.concatenate([[0], np.sort(rng.uniform(100, 3000, M - 1))])
     return S, S / rng.uniform(1, 4) + rng.uniform(3, 12)
@@ -24,7 +24,7 @@ def test_the_line_starts_at_the_dark_pair(subject, rng):
 
     Subtract V[0] from all V. The rest is S / K.
     """
-    S, V = drawn(rng)
+    S, V = draw_inputs(rng)
     slope = (V[-1] - V[0]) / S[-1]
     same(subject.line(S, V), slope, 1e-3 * slope, what="1 / K")
 
@@ -39,7 +39,7 @@ def test_pairs_with_uncertain_variances_have_smaller_weights(subject, rng):
     1 / K = sum(w S (V - V[0])) / sum(w S^2). The line always goes through the dark pair.
     """
     for read_noise in (0, 1000):  # with much of it, all weights are alike
-        S, V = drawn(rng)
+        S, V = draw_inputs(rng)
         V = V + read_noise
         V = V * (1 + 0.3 * (S > S[-4]) + rng.uniform(-0.05, 0.05, len(V)))
         slope = np.sum(S * (V - V[0]) / V**2) / np.sum((S / V) ** 2)
@@ -54,7 +54,7 @@ def test_halving_the_level_step_doubles_the_slope(subject, rng):
 
     Do not put a number with a fixed unit into the slope.
     """
-    S, V = drawn(rng)
+    S, V = draw_inputs(rng)
     before = float(finite(subject.line(S, V), (), what="1 / K"))
     same(
         subject.line(2 * S, 4 * V),

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, require, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     return np.exp(1.5 * rng.standard_normal((40, 50))).astype(np.float32)
 
 
@@ -21,7 +21,7 @@ def test_a_scene_has_one_average(subject, rng):
 
     Use np.mean without an axis.
     """
-    finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
+    finite(subject.log_average(draw_inputs(rng) + np.float32(1)), (), what="Lav")
 
 
 @points(6)
@@ -32,11 +32,11 @@ def test_it_is_the_geometric_mean(subject, rng):
 
     exp(mean(log(delta + L))). The factor 1 / N belongs inside exp; the paper prints it outside.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     lit = np.where(np.arange(L.size).reshape(L.shape) == 154, np.float32(1e6), L)  # one lamp
     for one, what in ((L, "ln Lav"), (lit, "ln Lav with a lamp")):
-        came = finite(subject.log_average(one), (), what="Lav")
-        same(np.log(came), np.log(one, dtype=float).mean(), 1e-3, what=what)
+        answer = finite(subject.log_average(one), (), what="Lav")
+        same(np.log(answer), np.log(one, dtype=float).mean(), 1e-3, what=what)
 
 
 @points(2, needs="test_it_is_the_geometric_mean")
@@ -47,11 +47,13 @@ def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
 
     Use log(delta + L), with delta inside the logarithm.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     L[:4] = 0
-    came = float(finite(subject.log_average(L), (), what="Lav"))
-    said = f"Lav: expected a value above 0 and below that without the black pixels, got {came:.4g}"
-    require(0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()), said)
+    answer = float(finite(subject.log_average(L), (), what="Lav"))
+    message = (
+        f"Lav: expected a value above 0 and below that without the black pixels, got {answer:.4g}"
+    )
+    require(0 < answer < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()), message)
 
 
 @points(2, needs="test_it_is_the_geometric_mean")
@@ -62,7 +64,7 @@ def test_ten_times_the_light_gives_ten_times_the_average(subject, rng):
 
     Do not forget exp at the end.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     one, ten = (
         float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10)
     )
@@ -77,11 +79,11 @@ def test_delta_is_given_in_medians(subject, rng):
 
     delta * np.median(L[L > 0]): black pixels do not count in this median.
     """
-    L = drawn(rng) * np.float32(10.0 ** rng.choice([-3, 3]))
+    L = draw_inputs(rng) * np.float32(10.0 ** rng.choice([-3, 3]))
     L[:15] = 0
     delta = float(rng.uniform(0.1, 0.4))
     added = delta * float(np.median(L[L > 0]))
     expected = np.log(added + L.astype(float)).mean()
-    came = finite(subject.log_average(L, delta=delta), (), what="Lav")
-    require(came > 0, f"Lav: expected a value above 0, got {float(came):.4g}")
-    same(np.log(came), expected, 1e-3, what="ln Lav with a large delta")
+    answer = finite(subject.log_average(L, delta=delta), (), what="Lav")
+    require(answer > 0, f"Lav: expected a value above 0, got {float(answer):.4g}")
+    same(np.log(answer), expected, 1e-3, what="ln Lav with a large delta")

@@ -8,7 +8,7 @@ from hdrlab.radiance import flare
 SHAPE = (100, 140)
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return F and G (H, W) of a map in which a share of the light is glare; one pixel is defective."""
     G = np.exp(rng.normal(0, 1, SHAPE))
     ratios = rng.uniform(0.02, 0.06) + 0.3 * np.sqrt(rng.random(SHAPE))
@@ -37,7 +37,7 @@ def test_the_share_is_extrapolated_from_two_low_quantiles(subject, rng):
 
     share = 2 q1 - q2, with the quantiles of 0.0002 and 0.001 of all ratios.
     """
-    same_share(subject, *drawn(rng))
+    same_share(subject, *draw_inputs(rng))
 
 
 @points(3)
@@ -48,7 +48,7 @@ def test_the_agreement_is_the_quotient_of_a_high_and_the_lowest_ratio(subject, r
 
     agreement = q3 / q1, with the quantiles of 0.01 and 0.0002.
     """
-    F, G = drawn(rng)
+    F, G = draw_inputs(rng)
     _, agreement = flare.lowest_ratio(F, G)
     came = answer(subject, F, G)[1]
     same(came, agreement, 2e-3 * agreement, what="the agreement")
@@ -62,7 +62,7 @@ def test_pixels_without_glare_do_not_count(subject, rng):
 
     Take the quantiles of the ratios with G above 0 only.
     """
-    F, G = drawn(rng)
+    F, G = draw_inputs(rng)
     G[rng.random(SHAPE) < 0.3] = 0
     same_share(subject, F, G)
 
@@ -75,7 +75,7 @@ def test_the_share_is_not_negative_and_needs_5000_pixels(subject, rng):
 
     If the ratios rise steeply, 2 q1 - q2 is negative. Return 0 then.
     """
-    F, G = drawn(rng)
+    F, G = draw_inputs(rng)
     share, agreement = answer(subject, F[:20], G[:20])
     same(share, 0, 0, what="the share in a small map")
     require(np.isposinf(numbers(agreement, what="the agreement")).all(), "the agreement is not inf")

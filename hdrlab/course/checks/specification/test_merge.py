@@ -28,26 +28,26 @@ def photographs(rng, E, times=TIMES):
     return np.clip(np.round(255 * M + 3 * rng.standard_normal(M.shape)), 20, 235).astype(np.uint8)
 
 
-def positive(came, shape):
+def positive(answer, shape):
     """Return a map of this shape as float64, whose values must all be above 0."""
-    E = finite(came, shape, what="E").astype(float)
-    said = f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not"
-    require(np.all(E > 0), said, came=E)
+    E = finite(answer, shape, what="E").astype(float)
+    message = f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not"
+    require(np.all(E > 0), message, came=E)
     return E
 
 
-def map_of(came, images):
+def map_of(answer, images):
     """Return a map as float64, which must be brighter where the photos are."""
-    E = positive(came, images.shape[1:])
+    E = positive(answer, images.shape[1:])
     follows = np.corrcoef(np.log(E).ravel(), images.mean(axis=0).ravel())[0, 1] > 0.5
     require(follows, "E: expected more radiance where the photos are brighter", came=E)
     return E
 
 
-def same_map(came, truth, tolerance=0.01, **knobs):
+def same_map(answer, truth, tolerance=0.01, **options):
     """Compare the logarithms of two maps, because errors of radiance are ratios."""
-    E = positive(came, truth.shape)
-    same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
+    E = positive(answer, truth.shape)
+    same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **options)
 
 
 def is_valid_input(images, times, g, w=None):
@@ -96,10 +96,10 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
     taken = camera.shoot(E, times, camera.Camera(response="gamma"))
-    came = np.log(
+    answer = np.log(
         finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float)
     )
-    ratio = came - np.log(E)
+    ratio = answer - np.log(E)
     same(
         ratio - np.median(ratio),
         np.zeros(E.shape),
@@ -111,7 +111,11 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
         finite(subject.merge(taken.images, 8 * taken.times, G), E.shape, what="E").astype(float)
     )
     same(
-        step, came - np.log(8), 1e-3, what="ln E with exposure times 8 times as long", picture=True
+        step,
+        answer - np.log(8),
+        1e-3,
+        what="ln E with exposure times 8 times as long",
+        picture=True,
     )
 
 

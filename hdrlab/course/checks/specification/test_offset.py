@@ -6,8 +6,8 @@ from hdrlab.enhance import relight
 
 def same_offset(subject, average, target=128.0, **shape):
     expected = relight.offset(average, target, **shape)
-    came = subject.offset(average, target, **shape)
-    same(came, expected, 2e-3, what=f"the offset from {average:.4g} to {target:.4g}, in stops")
+    answer = subject.offset(average, target, **shape)
+    same(answer, expected, 2e-3, what=f"the offset from {average:.4g} to {target:.4g}, in stops")
 
 
 @points(4)

@@ -8,7 +8,7 @@ from hdrlab.course.checks.compare import points, same
 SHAPE = (37, 51)
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a correlation c in which large values stand beside each other."""
     c = rng.normal(0, 1, SHAPE)
     for height in (9, 8, 7):
@@ -31,7 +31,7 @@ def test_the_highest_peak_is_given_as_a_shift(subject, rng):
 
     Subtract (h - 1, w - 1) from its row and column. The order is (dy, dx).
     """
-    c = drawn(rng)
+    c = draw_inputs(rng)
     same(subject.peaks(c, 1), cerman.peaks(c, 1), 0, what="the shift of the highest peak")
 
 
@@ -44,7 +44,7 @@ def test_the_values_beside_a_peak_are_no_peaks(subject, rng):
     scipy.ndimage.maximum_filter(c, 5) gives the largest of these values for each place.
     """
     for count in (3, 6):
-        c = drawn(rng)
+        c = draw_inputs(rng)
         row, column = rng.integers(8, 28), rng.integers(8, 40)
         c[row, column] = 20
         c[row, column + 3] = 19  # not among the 5 x 5 values around the other
@@ -61,7 +61,7 @@ def test_a_peak_may_lie_at_the_edge(subject, rng):
 
     Do not leave out the first or the last two rows and columns.
     """
-    c = drawn(rng)
+    c = draw_inputs(rng)
     column = int(rng.integers(5, 45))
     c[0, column] = 30
     c[-1, column + 1] = 28  # the opposite edge is far away
@@ -79,7 +79,7 @@ def test_fewer_peaks_are_returned_if_the_others_are_not_above_0(subject, rng):
 
     Return only peaks with c above 0, even if they are fewer than count.
     """
-    c = drawn(rng) - 20
+    c = draw_inputs(rng) - 20
     c[12, int(rng.integers(5, 20))] = 1 + rng.random()
     c[30, int(rng.integers(20, 45))] = 3 + rng.random()
     same(subject.peaks(c, 3), cerman.peaks(c, 3), 0, what="the shifts of the 2 peaks above 0")

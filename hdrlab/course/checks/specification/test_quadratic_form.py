@@ -7,7 +7,7 @@ from hdrlab.calibration.wilburn import quadratic_form
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng, count):
+def draw_inputs(rng, count):
     """Return blends (I, M) of a camera, each of another length, and of another scale and offset."""
     blends = []
     for _ in range(count):
@@ -32,7 +32,7 @@ def test_the_error_is_what_is_left_of_a_line_through_one_blend(subject, rng):
     V has the columns M^0, M^1 ... M^d. Subtract from each column its own line in I. With what is
     left, R, the error of a is |R a|^2, so Q = R^T R.
     """
-    same_form(subject, drawn(rng, 1), int(rng.integers(2, 5)))
+    same_form(subject, draw_inputs(rng, 1), int(rng.integers(2, 5)))
 
 
 @points(6)
@@ -43,7 +43,7 @@ def test_each_blend_has_a_line_of_its_own(subject, rng):
 
     Compute Q of each blend by itself, and add them up.
     """
-    same_form(subject, drawn(rng, 3), 4, what="Q of three blends")
+    same_form(subject, draw_inputs(rng, 3), 4, what="Q of three blends")
 
 
 @points(2, needs="test_the_error_is_what_is_left_of_a_line_through_one_blend")

@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import parts, points, same, states
 from hdrlab.radiance import ratios
 
 
-def drawn(rng, off=10, scatter=0.1):
+def draw_inputs(rng, off=10, scatter=0.1):
     """Return 60 equations of one ratio with some scatter; the first `off` of them show something
     that moved.
     """
@@ -17,10 +17,12 @@ def drawn(rng, off=10, scatter=0.1):
     return ratios.Equations(x, y, v)
 
 
-def asked(subject, found, **knobs):
+def get_answer(subject, found, **options):
     """Return the student's states as (k, used, V), and the library's."""
-    came = states(subject.ratio_steps(found, **knobs), what="the states")
-    return [parts(one, 3, what="a state") for one in came], list(ratios.ratio_steps(found, **knobs))
+    answer = states(subject.ratio_steps(found, **options), what="the states")
+    return [parts(one, 3, what="a state") for one in answer], list(
+        ratios.ratio_steps(found, **options)
+    )
 
 
 # right iterations may differ in their steps, which small inputs show most
@@ -35,9 +37,9 @@ def test_the_first_ratio_is_that_of_least_squares(subject, rng):
 
     k = sum v^2 x y / sum v^2 x^2, and V is the mean of (v (y - k x))^2.
     """
-    (came, *_), (expected, *_) = asked(subject, drawn(rng))
-    same(came[0], expected.k, 1e-4 * expected.k, what="the first k")
-    same(came[2], expected.V, 1e-3 * expected.V, what="the first V")
+    (answer, *_), (expected, *_) = get_answer(subject, draw_inputs(rng))
+    same(answer[0], expected.k, 1e-4 * expected.k, what="the first k")
+    same(answer[2], expected.V, 1e-3 * expected.V, what="the first V")
 
 
 @points(4)
@@ -49,11 +51,17 @@ def test_a_round_leaves_out_pairs_with_large_errors(subject, rng):
     Compute k and V again from the remaining pairs.
     """
     for limit in (3.0, 2.0):
-        came, expected = asked(subject, drawn(rng), limit=limit, tolerance=0.0, rounds=1)
-        same(
-            came[-1][1], expected[1].used, 0, what="the pairs in use after one round", kind="values"
+        answer, expected = get_answer(
+            subject, draw_inputs(rng), limit=limit, tolerance=0.0, rounds=1
         )
-        same(came[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
+        same(
+            answer[-1][1],
+            expected[1].used,
+            0,
+            what="the pairs in use after one round",
+            kind="values",
+        )
+        same(answer[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
 
 
 @points(2, needs="test_a_round_leaves_out_pairs_with_large_errors")
@@ -65,9 +73,11 @@ def test_a_pair_that_fits_again_comes_back(subject, rng):
     Compute `used` again in each round, from the errors of all pairs.
     """
     for _ in range(3):
-        came, expected = asked(subject, drawn(rng, 25, 0.02), limit=1.2, tolerance=0.0, rounds=4)
+        answer, expected = get_answer(
+            subject, draw_inputs(rng, 25, 0.02), limit=1.2, tolerance=0.0, rounds=4
+        )
         same(
-            came[-1][1],
+            answer[-1][1],
             expected[-1].used,
             0,
             what="the pairs in use after four rounds",
@@ -83,6 +93,6 @@ def test_there_is_a_state_before_the_first_round_and_one_after_each(subject, rng
 
     Yield the state of a round before you test whether k has converged.
     """
-    for knobs in ({"tolerance": 0.0, "rounds": 3}, {"tolerance": 1e9}):
-        came, expected = asked(subject, drawn(rng), **knobs)
-        same(len(came), len(expected), 0, what="the number of states")
+    for options in ({"tolerance": 0.0, "rounds": 3}, {"tolerance": 1e9}):
+        answer, expected = get_answer(subject, draw_inputs(rng), **options)
+        same(len(answer), len(expected), 0, what="the number of states")

@@ -33,11 +33,11 @@ def same_curve(f, truth, tolerance):
     same(f, truth, tolerance * truth[-1], what="f^-1 at levels 12 to 244", kind="curve")
 
 
-def asked(subject, Z, t, **knobs):
+def get_answer(subject, Z, t, **options):
     """Return f^-1 of every state divided by f^-1(128), because its scale is free."""
-    came = states(subject.recover_steps(Z, t, W, **knobs), what="the states")
+    answer = states(subject.recover_steps(Z, t, W, **options), what="the states")
     found = []
-    for state in came:
+    for state in answer:
         f = finite(
             state[0] if isinstance(state, tuple | list) else state, (256,), what="f^-1"
         ).astype(float)
@@ -63,7 +63,7 @@ def test_the_iterations_converge_to_the_curve_of_the_camera(subject, rng):
         responses.RESPONSES["gamma"],
     ):  # the line is far from it
         Z, t = samples(rng, response, N=2000)
-        f = asked(subject, Z, t, max_iterations=25)[-1]
+        f = get_answer(subject, Z, t, max_iterations=25)[-1]
         truth = np.exp(responses.true_g(response))
         scale = np.sum(f[SHOWN] * truth[SHOWN]) / np.sum(f[SHOWN] ** 2)
         same_curve(scale * f, truth, 0.02)
@@ -83,9 +83,9 @@ def test_an_iteration_is_a_weighted_mean_followed_by_a_plain_one(subject, rng):
     line = np.arange(256) / 128
     shown = slice(15, 249)
     truth = robertson.update(Z, t, robertson.irradiance(Z, t, line, W))
-    found = asked(subject, Z, t, max_iterations=3, tolerance=0.0)
-    said = f"expected a state before the first iteration and one after each, got {len(found)}"
-    require(len(found) >= 2, said)
+    found = get_answer(subject, Z, t, max_iterations=3, tolerance=0.0)
+    message = f"expected a state before the first iteration and one after each, got {len(found)}"
+    require(len(found) >= 2, message)
     expected = truth[shown] / truth[128]
     same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
@@ -103,7 +103,7 @@ def test_a_correct_curve_does_not_change(subject, rng):
     t = np.array([1.0, 2.0, 4.0])
     shown = np.unique(Z)
     truth = np.where(np.isin(np.arange(256), shown) & (W > 0), np.arange(256) / 128, np.nan)
-    for f in asked(subject, Z, t, max_iterations=5):
+    for f in get_answer(subject, Z, t, max_iterations=5):
         same(f, truth, 2e-3, what="f^-1 of a linear camera", kind="curve", where=~np.isnan(truth))
 
 
@@ -116,7 +116,7 @@ def test_levels_without_pixels_are_filled_by_interpolation(subject, rng):
     Interpolate the empty pixel values: use np.interp over the pixel values that have pixels.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    whole, even = (asked(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
+    whole, even = (get_answer(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
     same_curve(even, whole, 0.05)
 
 
@@ -130,10 +130,10 @@ def test_each_iteration_yields_a_state_and_changes_the_curve_less(subject, rng):
     The changes must become smaller from one iteration to the next.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    found = asked(subject, Z, t, max_iterations=8, tolerance=0.0)
+    found = get_answer(subject, Z, t, max_iterations=8, tolerance=0.0)
     moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
-    said = f"expected 9 states with smaller and smaller changes, got {len(found)} with changes of {moved}"
-    require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], said)
+    message = f"expected 9 states with smaller and smaller changes, got {len(found)} with changes of {moved}"
+    require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], message)
 
 
 @points(2, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
@@ -145,7 +145,9 @@ def test_the_unit_of_time_does_not_matter(subject, rng):
     Divide f^-1 by its value at 128 at the end of every iteration.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    one, other = (asked(subject, Z, factor * t, max_iterations=6)[-1] for factor in (1.0, 1000.0))
+    one, other = (
+        get_answer(subject, Z, factor * t, max_iterations=6)[-1] for factor in (1.0, 1000.0)
+    )
     same_curve(other, one, 0.005)
 
 
@@ -159,7 +161,7 @@ def test_tolerance_and_max_iterations_end_it(subject, rng):
     Do not write numbers of your own in their place.
     """
     Z, t = samples(rng, laws.drawn_response(rng), N=300)
-    for knobs, most in (({"tolerance": 1e9}, 1), ({"tolerance": 0.0, "max_iterations": 3}, 3)):
-        count = len(asked(subject, Z, t, **knobs))
-        said = f"expected at most {most + 1} states with {knobs}, got {count}"
-        require(count <= most + 1, said)
+    for options, most in (({"tolerance": 1e9}, 1), ({"tolerance": 0.0, "max_iterations": 3}, 3)):
+        count = len(get_answer(subject, Z, t, **options))
+        message = f"expected at most {most + 1} states with {options}, got {count}"
+        require(count <= most + 1, message)

@@ -12,7 +12,7 @@ def differences(rng, low, high):
     return rng.choice([-1.0, 1.0], (24, 30)) * rng.uniform(low, high, (24, 30))
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return log luminance that differs from g by more than noise, the value g, and sigma."""
     g = float(rng.uniform(-4, -2))
     lL = g + differences(rng, 0.03, 3)
@@ -29,13 +29,13 @@ def test_sigma_separates_details_from_edges(subject, rng):
     With d = |lL - g|: r = g +- sigma (d / sigma)^alpha where d <= sigma, and r = g +- (sigma + beta
     (d - sigma)) beyond.
     """
-    lL, g, sigma = drawn(rng)
+    lL, g, sigma = draw_inputs(rng)
     d = np.abs(lL - g)
     alpha = float(rng.uniform(0.4, 0.8))
     beta = float(rng.uniform(0.2, 0.6))
     far = np.where(d <= sigma, sigma * (d / sigma) ** alpha, sigma + beta * (d - sigma))
-    came = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
-    same(came, g + np.sign(lL - g) * far, 1e-3, what="r", picture=True)
+    answer = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
+    same(answer, g + np.sign(lL - g) * far, 1e-3, what="r", picture=True)
 
 
 @points(2)
@@ -46,12 +46,12 @@ def test_details_are_raised_to_the_power_alpha(subject, rng):
 
     r = g +- sigma (d / sigma)^alpha, with d = |lL - g|.
     """
-    _, g, sigma = drawn(rng)
+    _, g, sigma = draw_inputs(rng)
     small = (g + differences(rng, 0.03, 0.99 * sigma)).astype(np.float32)
     for alpha in (0.5, 2.0):
         expected = g + np.sign(small - g) * sigma * (np.abs(small - g) / sigma) ** alpha
-        came = subject.remap(small, g, sigma=sigma, alpha=alpha, beta=0.0)
-        same(came, expected, 1e-3, what=f"r of details, alpha = {alpha:g}", picture=True)
+        answer = subject.remap(small, g, sigma=sigma, alpha=alpha, beta=0.0)
+        same(answer, expected, 1e-3, what=f"r of details, alpha = {alpha:g}", picture=True)
 
 
 @points(3)
@@ -62,15 +62,15 @@ def test_edges_are_scaled_by_beta(subject, rng):
 
     r = g +- (sigma + beta (d - sigma)). alpha has no effect here.
     """
-    lL, g, sigma = drawn(rng)
+    lL, g, sigma = draw_inputs(rng)
     edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(
         np.float32
     )  # shifted so that all differences are above sigma
     for beta in (0.0, 0.4):
         beyond = np.abs(edges - g) - sigma
         expected = g + np.sign(edges - g) * (sigma + beta * beyond)
-        came = subject.remap(edges, g, sigma=sigma, alpha=1.0, beta=beta)
-        same(came, expected, 1e-3, what=f"r of edges, beta = {beta:g}", picture=True)
+        answer = subject.remap(edges, g, sigma=sigma, alpha=1.0, beta=beta)
+        same(answer, expected, 1e-3, what=f"r of edges, beta = {beta:g}", picture=True)
 
 
 @points(2)
@@ -84,7 +84,7 @@ def test_noise_is_not_amplified(subject, rng):
     For alpha < 1: r = g +- sigma (tau (d / sigma)^alpha + (1 - tau) d / sigma), with tau = y^2
     (2 - y)^2 and y = d / 0.01 - 1, between 0 and 1.
     """
-    _, g, sigma = drawn(rng)
+    _, g, sigma = draw_inputs(rng)
     lL = (g + differences(rng, 0.0, 0.025)).astype(np.float32)
     d = np.abs(lL - g)
     y = np.clip(d / 0.01 - 1, 0, 1)
@@ -92,8 +92,8 @@ def test_noise_is_not_amplified(subject, rng):
         power = (d / sigma) ** alpha
         tau = y**2 * (2 - y) ** 2 if alpha < 1 else 1.0
         expected = g + np.sign(lL - g) * sigma * (tau * power + (1 - tau) * d / sigma)
-        came = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=0.0)
-        same(came, expected, 1e-3, what=f"r of noise, alpha = {alpha:g}", picture=True)
+        answer = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=0.0)
+        same(answer, expected, 1e-3, what=f"r of noise, alpha = {alpha:g}", picture=True)
 
 
 def test_twice_the_light_only_shifts_r(subject, rng):
@@ -103,8 +103,8 @@ def test_twice_the_light_only_shifts_r(subject, rng):
 
     Compute with lL - g, and add g once, at the end.
     """
-    lL, g, sigma = drawn(rng)
-    knobs = {"sigma": sigma, "alpha": 0.6, "beta": 0.3}
-    before = finite(subject.remap(lL, g, **knobs), lL.shape, what="r")
-    came = subject.remap(lL + np.float32(np.log(2)), g + np.log(2), **knobs)
-    same(came, before + np.log(2), 1e-3, what="r of twice the light", picture=True)
+    lL, g, sigma = draw_inputs(rng)
+    options = {"sigma": sigma, "alpha": 0.6, "beta": 0.3}
+    before = finite(subject.remap(lL, g, **options), lL.shape, what="r")
+    answer = subject.remap(lL + np.float32(np.log(2)), g + np.log(2), **options)
+    same(answer, before + np.log(2), 1e-3, what="r of twice the light", picture=True)

@@ -11,13 +11,13 @@ SIGMA = 4.0
 INNER = (slice(16, -16), slice(16, -16))  # away from the border, where blurs differ
 
 
-def drawn(rng, shape=(60, 76)):
+def draw_inputs(rng, shape=(60, 76)):
     """Return smooth luminance without hot pixels."""
     lL = gaussian_filter(rng.standard_normal(shape), 5)
     return np.exp(0.7 * lL / lL.std()).astype(np.float32)
 
 
-def asked(subject, L, k=8.0):
+def get_answer(subject, L, k=8.0):
     """Return s (H, W)."""
     return finite(subject.scale(L, headroom=k, sigma=SIGMA), L.shape, what="s").astype(float)
 
@@ -34,7 +34,7 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
 
     No value may be NaN or infinite.
     """
-    s = asked(subject, drawn(rng))
+    s = get_answer(subject, draw_inputs(rng))
     require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", came=s)
 
 
@@ -50,7 +50,13 @@ def test_a_uniform_image_is_shown_at_one_over_k(subject, rng):
         level = float(10 ** rng.uniform(-2, 3))
         k = float(rng.uniform(2, 16))
         L = np.full((40, 40), level, np.float32)
-        same(asked(subject, L, k) * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
+        same(
+            get_answer(subject, L, k) * L,
+            np.full(L.shape, 1 / k),
+            0.01 / k,
+            what="s L",
+            picture=True,
+        )
 
 
 @points(6)
@@ -61,9 +67,9 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
 
     s = 1 / (k blur(L)).
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     truth = 1 / (8 * gaussian_filter(L.astype(float), SIGMA))
-    shares = (asked(subject, L) / truth)[INNER]
+    shares = (get_answer(subject, L) / truth)[INNER]
     same(shares, np.ones(shares.shape), 0.08, what="s k blur(L)", picture=True)
 
 
@@ -75,6 +81,6 @@ def test_the_unit_of_luminance_cancels(subject, rng):
 
     s of 10 L must be s / 10.
     """
-    L = drawn(rng)
-    one, ten = (asked(subject, light) * light for light in (L, np.float32(10) * L))
+    L = draw_inputs(rng)
+    one, ten = (get_answer(subject, light) * light for light in (L, np.float32(10) * L))
     same(ten, one, 0.01 * float(one.max()), what="s L with ten times the light", picture=True)

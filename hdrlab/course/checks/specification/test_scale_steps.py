@@ -11,7 +11,7 @@ from hdrlab.tonemap import reinhard
 CLOSE = 2e-4  # a response so close to the threshold may fall on either side
 
 
-def drawn(rng, shape=(48, 64)):
+def draw_inputs(rng, shape=(48, 64)):
     """Return V1 at each of the nine widths, for an image with edges and texture."""
     y, x = np.indices(shape)
     lit = (np.hypot(y - rng.integers(10, 38), x - rng.integers(10, 54)) < rng.integers(6, 12)) * 8.0
@@ -19,9 +19,11 @@ def drawn(rng, shape=(48, 64)):
     return [gaussian_filter(Lm, s / 4) for s in reinhard.WIDTHS]
 
 
-def asked(subject, blurred, **knobs):
+def get_answer(subject, blurred, **options):
     """Return the states, each with its five parts."""
-    return [parts(one, 5, what="a state") for one in states(subject.scale_steps(blurred, **knobs))]
+    return [
+        parts(one, 5, what="a state") for one in states(subject.scale_steps(blurred, **options))
+    ]
 
 
 def doubtful(truth, threshold=0.05):
@@ -29,11 +31,16 @@ def doubtful(truth, threshold=0.05):
     return np.any([np.abs(np.abs(one.response) - threshold) < CLOSE for one in truth], axis=0)
 
 
-def same_adaptation(came, truth, what, sure):
+def same_adaptation(answer, truth, what, sure):
     """Compare the adaptations of the last states, divided by the largest value."""
     scale = truth[-1].adaptation.max()
     same(
-        came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure
+        answer[-1][4] / scale,
+        truth[-1].adaptation / scale,
+        1e-3,
+        what=what,
+        picture=True,
+        where=sure,
     )
 
 
@@ -50,11 +57,11 @@ def test_each_response_compares_a_width_with_the_next(subject, rng):
 
     V = (V1 - V2) / (2^phi a / s^2 + V1).
     """
-    blurred = drawn(rng)
+    blurred = draw_inputs(rng)
     truth = list(reinhard.scale_steps(blurred))
-    came = asked(subject, blurred)
-    same(len(came), 8, 0, what="the number of states")
-    for one, true in zip(came, truth, strict=True):
+    answer = get_answer(subject, blurred)
+    same(len(answer), 8, 0, what="the number of states")
+    for one, true in zip(answer, truth, strict=True):
         same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
 
 
@@ -68,12 +75,12 @@ def test_a_pixel_takes_the_largest_even_width(subject, rng):
     even = even & (|V| < threshold). Set the adaptation to the center V1 where the pixel is still
     even.
     """
-    blurred = drawn(rng)
+    blurred = draw_inputs(rng)
     truth = list(reinhard.scale_steps(blurred))
-    came = asked(subject, blurred)
+    answer = get_answer(subject, blurred)
     sure = ~doubtful(truth)
-    same_adaptation(came, truth, "the adaptation", sure)
-    for one, true in zip(came, truth, strict=True):
+    same_adaptation(answer, truth, "the adaptation", sure)
+    for one, true in zip(answer, truth, strict=True):
         same(one[3], true.even, 0, what=f"even at width {true.width:.3g}", picture=True, where=sure)
 
 
@@ -86,8 +93,8 @@ def test_a_uniform_image_takes_the_largest_neighborhood(subject, rng):
     """
     level = float(rng.uniform(0.1, 2))
     blurred = [np.full((12, 15), level * (1 + 1e-3 * k), np.float32) for k in range(9)]
-    came = asked(subject, blurred)
-    same(came[-1][4], blurred[7], 2e-4 * level, what="the adaptation of a uniform image")
+    answer = get_answer(subject, blurred)
+    same(answer[-1][4], blurred[7], 2e-4 * level, what="the adaptation of a uniform image")
 
 
 @points(4)
@@ -98,10 +105,10 @@ def test_key_phi_and_threshold_are_used(subject, rng):
 
     Use 2^phi a / s^2 with the values that you are given.
     """
-    blurred = drawn(rng)
-    for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
-        truth = list(reinhard.scale_steps(blurred, **knobs))
-        came = asked(subject, blurred, **knobs)
-        sure = ~doubtful(truth, knobs.get("threshold", 0.05))
-        ((knob, value),) = knobs.items()
-        same_adaptation(came, truth, f"the adaptation with {knob}={value}", sure)
+    blurred = draw_inputs(rng)
+    for options in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
+        truth = list(reinhard.scale_steps(blurred, **options))
+        answer = get_answer(subject, blurred, **options)
+        sure = ~doubtful(truth, options.get("threshold", 0.05))
+        ((knob, value),) = options.items()
+        same_adaptation(answer, truth, f"the adaptation with {knob}={value}", sure)

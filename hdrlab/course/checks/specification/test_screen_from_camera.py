@@ -28,8 +28,8 @@ def test_gray_of_the_camera_is_gray_on_the_screen(subject, rng):
     """
     M = random_camera(rng)
     P = random_screen(rng)
-    came = np.asarray(subject.screen_from_camera(M, P))
-    same(came @ np.ones(3), np.ones(3), 1e-6, what="C (1, 1, 1)")
+    answer = np.asarray(subject.screen_from_camera(M, P))
+    same(answer @ np.ones(3), np.ones(3), 1e-6, what="C (1, 1, 1)")
 
 
 @points(3)
@@ -43,8 +43,8 @@ def test_a_camera_whose_channels_are_balanced_needs_the_inverse_alone(subject, r
     P = random_screen(rng)
     A = random_camera(rng) @ P
     A = A / A.sum(axis=1, keepdims=True)
-    came = subject.screen_from_camera(A @ np.linalg.inv(P), P)
-    same(came, np.linalg.inv(A), 1e-6, what="C")
+    answer = subject.screen_from_camera(A @ np.linalg.inv(P), P)
+    same(answer, np.linalg.inv(A), 1e-6, what="C")
 
 
 @points(6)

@@ -8,7 +8,7 @@ from hdrlab.course.checks.compare import points, same
 CODE = np.array([float(chop) for chop in "1011000011101"])
 
 
-def drawn(rng, channels=(), noise=0.0):
+def draw_inputs(rng, channels=(), noise=0.0):
     """Return the photo y of a moving object x, and x."""
     x = rng.uniform(0, 1, (int(rng.integers(30, 40)), *channels))
     y = flutter.smear(x, CODE)
@@ -23,7 +23,7 @@ def test_without_noise_the_object_comes_back(subject, rng):
 
     Build A from h, (n + m - 1, n), with n = len(y) - m + 1, and solve for x.
     """
-    y, x = drawn(rng)
+    y, x = draw_inputs(rng)
     same(subject.sharpen(y, CODE), x, 1e-4, what="x", kind="curve")
 
 
@@ -35,7 +35,7 @@ def test_noise_is_fitted_by_least_squares(subject, rng):
 
     A^T A x = A^T y, or numpy.linalg.lstsq(A, y).
     """
-    y, _ = drawn(rng, noise=0.03)
+    y, _ = draw_inputs(rng, noise=0.03)
     same(subject.sharpen(y, CODE), flutter.sharpen(y, CODE), 1e-3, what="x", kind="curve")
 
 
@@ -47,7 +47,7 @@ def test_each_column_is_sharpened_by_itself(subject, rng):
 
     lstsq takes a matrix on the right, too. x is (n, 3).
     """
-    y, _ = drawn(rng, (3,), noise=0.01)
+    y, _ = draw_inputs(rng, (3,), noise=0.01)
     same(subject.sharpen(y, CODE), flutter.sharpen(y, CODE), 1e-3, what="x in color", picture=True)
 
 

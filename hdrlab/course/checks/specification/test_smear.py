@@ -4,7 +4,7 @@ from hdrlab.beyond import flutter
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng, channels=()):
+def draw_inputs(rng, channels=()):
     """Return an object x (n, ...) and a shutter h (m,), which begins open and is not symmetric."""
     x = rng.uniform(0.2, 1, (int(rng.integers(20, 30)), *channels))
     h = (rng.random(int(rng.integers(8, 14))) < 0.5).astype(float)
@@ -20,7 +20,7 @@ def test_each_open_chop_adds_the_object_where_it_is(subject, rng):
 
     y[i] = sum over k of h[k] x[i - k] / m: each chop is the m-th part of the exposure.
     """
-    x, h = drawn(rng)
+    x, h = draw_inputs(rng)
     same(subject.smear(x, h), flutter.smear(x, h), 1e-5, what="y", kind="curve")
 
 
@@ -32,7 +32,7 @@ def test_each_channel_moves_in_the_same_way(subject, rng):
 
     Smear each column by itself; y is (n + m - 1, 3).
     """
-    x, h = drawn(rng, (3,))
+    x, h = draw_inputs(rng, (3,))
     same(subject.smear(x, h), flutter.smear(x, h), 1e-5, what="y in color", picture=True)
 
 
@@ -44,6 +44,6 @@ def test_the_light_is_the_open_fraction_of_the_time(subject, rng):
 
     The sum of y is the sum of x, times the number of open chops, divided by m.
     """
-    x, h = drawn(rng)
+    x, h = draw_inputs(rng)
     y = finite(subject.smear(x, h), (len(x) + len(h) - 1,), what="y")
     same(y.sum(), x.sum() * h.mean(), 1e-4 * x.sum(), what="the sum of y")

@@ -7,15 +7,15 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.course.checks.laws import drawn_response
 
 
-def drawn(rng, n):
+def draw_inputs(rng, n):
     """Return the response g (n,) of a random camera."""
     M = (np.arange(n) + 0.5) / n
     return np.log(drawn_response(rng).inverse(M))
 
 
-def asked(subject, g, **knobs):
+def get_answer(subject, g, **options):
     """Return w (n,) divided by the weight in the middle."""
-    w = finite(subject.snr(g, **knobs), (len(g),), what="w").astype(float)
+    w = finite(subject.snr(g, **options), (len(g),), what="w").astype(float)
     return w / w[len(g) // 2]
 
 
@@ -32,13 +32,13 @@ def test_the_weight_is_the_signal_over_its_slope(subject, rng):
 
     w = f / f' with f = exp(g). Compute f' from the pixel values `span` below and `span` above.
     """
-    g = drawn(rng, 2 * int(rng.integers(80, 140)))
+    g = draw_inputs(rng, 2 * int(rng.integers(80, 140)))
     span = int(rng.integers(2, 4))
     # ripples that a slope over `span` levels on either side does not see
     g += 0.003 * np.sin(np.pi * np.arange(len(g)) / span + rng.uniform(0.5, 1))
-    came = asked(subject, g, least=0.01, span=span)
+    answer = get_answer(subject, g, least=0.01, span=span)
     expected = weights.snr(g, least=0.01, span=span)
-    same(came[1:-1], expected[1:-1], 0.02 * expected.max(), what="w", kind="curve")
+    same(answer[1:-1], expected[1:-1], 0.02 * expected.max(), what="w", kind="curve")
 
 
 @points(2)
@@ -49,9 +49,9 @@ def test_clipped_levels_have_weight_0(subject, rng):
 
     w(0) = w(n - 1) = 0.
     """
-    g = drawn(rng, 100)
+    g = draw_inputs(rng, 100)
     same(
-        asked(subject, g, least=0.01, span=4)[[0, -1]],
+        get_answer(subject, g, least=0.01, span=4)[[0, -1]],
         [0, 0],
         1e-6,
         what="the weights of the lowest and the highest level",
@@ -66,11 +66,13 @@ def test_the_weight_is_bounded_where_the_curve_is_flat(subject, rng):
 
     The mean slope is (f(n - 1) - f(0)) / (n - 1).
     """
-    g = drawn(rng, 120)
+    g = draw_inputs(rng, 120)
     g[70:100], g[100:] = g[70], g[100:] - g[100] + g[70]
     expected = weights.snr(g, least=0.2, span=3)
-    came = asked(subject, g, least=0.2, span=3)
-    same(came, expected, 0.02 * expected.max(), what="w of a curve with a flat part", kind="curve")
+    answer = get_answer(subject, g, least=0.2, span=3)
+    same(
+        answer, expected, 0.02 * expected.max(), what="w of a curve with a flat part", kind="curve"
+    )
 
 
 @points(1, needs="test_the_weight_is_the_signal_over_its_slope")
@@ -81,7 +83,7 @@ def test_the_unit_of_the_exposure_cancels(subject, rng):
 
     `least` is relative to the mean slope of f, so compute the mean slope from the same f.
     """
-    g = drawn(rng, 100)
-    before = asked(subject, g, least=0.05, span=4)
-    came = asked(subject, g + rng.uniform(-3, 3), least=0.05, span=4)
-    same(came, before, 1e-2 * before.max(), what="w with another unit of exposure", kind="curve")
+    g = draw_inputs(rng, 100)
+    before = get_answer(subject, g, least=0.05, span=4)
+    answer = get_answer(subject, g + rng.uniform(-3, 3), least=0.05, span=4)
+    same(answer, before, 1e-2 * before.max(), what="w with another unit of exposure", kind="curve")

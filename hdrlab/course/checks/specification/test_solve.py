@@ -13,7 +13,7 @@ def laplacian(u):
     return wide[2:, 1:-1] + wide[:-2, 1:-1] + wide[1:-1, 2:] + wide[1:-1, :-2] - 4 * u
 
 
-def asked(subject, divG):
+def get_answer(subject, divG):
     """Return u, shifted to the mean 0."""
     u = finite(subject.solve(divG), divG.shape, what="u").astype(float)
     return u - u.mean()
@@ -33,7 +33,7 @@ def test_zero_divergence_gives_a_constant_image(subject):
 
     The first coefficient is 0 / 0: set it to 0.
     """
-    same(asked(subject, np.zeros((9, 12))), np.zeros((9, 12)), 1e-9, what="u minus its mean")
+    same(get_answer(subject, np.zeros((9, 12))), np.zeros((9, 12)), 1e-9, what="u minus its mean")
 
 
 @points(5)
@@ -48,7 +48,7 @@ def test_the_laplacian_of_u_is_the_divergence(subject, rng):
     """
     u = rng.standard_normal((20, 31))
     u -= u.mean()
-    same(asked(subject, laplacian(u)), u, 5e-3, what="u", picture=True)
+    same(get_answer(subject, laplacian(u)), u, 5e-3, what="u", picture=True)
 
 
 @points(3)
@@ -60,7 +60,7 @@ def test_a_ramp_does_not_wrap_around(subject, rng):
     Use dctn(type=2) and idctn(type=2).
     """
     u = np.broadcast_to(np.linspace(0, float(rng.uniform(2, 5)), 33), (18, 33)).copy()
-    same(asked(subject, laplacian(u)), u - u.mean(), 5e-3, what="u of a ramp", picture=True)
+    same(get_answer(subject, laplacian(u)), u - u.mean(), 5e-3, what="u of a ramp", picture=True)
 
 
 @points(2)
@@ -75,7 +75,7 @@ def test_images_of_any_shape_are_solved(subject, rng):
         u = rng.standard_normal(shape)
         u -= u.mean()
         same(
-            asked(subject, laplacian(u)),
+            get_answer(subject, laplacian(u)),
             u,
             5e-3,
             what=f"u of {shape[0]} x {shape[1]} pixels",

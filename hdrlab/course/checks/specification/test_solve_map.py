@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import points, same
 from hdrlab.response import space
 
 
-def drawn(rng, rows=None):
+def draw_inputs(rng, rows=None):
     """Return A (m, K), b (m,) and sd (K,)."""
     K = int(rng.integers(4, 7))
     m = rows or K + int(rng.integers(3, 12))
@@ -27,7 +27,7 @@ def test_the_coefficients_minimize_the_errors_and_the_distance_from_the_prior(su
     Add a row with 1 / sd_k in column k to A for each coefficient, and a 0 to b, and solve by least
     squares. Or solve (A^T A + diag(1 / sd^2)) c = A^T b.
     """
-    same_coefficients(subject, *drawn(rng))
+    same_coefficients(subject, *draw_inputs(rng))
 
 
 @points(4)
@@ -38,7 +38,7 @@ def test_fewer_equations_than_coefficients_are_enough(subject, rng):
 
     With the rows of the prior, the system has K + m equations, and one solution.
     """
-    same_coefficients(subject, *drawn(rng, rows=3), what="c from three equations")
+    same_coefficients(subject, *draw_inputs(rng, rows=3), what="c from three equations")
 
 
 @points(2)
@@ -49,7 +49,7 @@ def test_with_a_wide_prior_the_equations_decide(subject, rng):
 
     c is the solution of ordinary least squares. Divide by sd in the penalty; do not multiply.
     """
-    A, b, sd = drawn(rng)
+    A, b, sd = draw_inputs(rng)
     c = np.linalg.lstsq(A, b)[0]
-    came = subject.solve_map(A, b, 1e3 * np.ones(len(sd)))
-    same(came, c, 1e-4 * np.abs(c).max(), what="c with a wide prior", kind="values")
+    answer = subject.solve_map(A, b, 1e3 * np.ones(len(sd)))
+    same(answer, c, 1e-4 * np.abs(c).max(), what="c with a wide prior", kind="values")

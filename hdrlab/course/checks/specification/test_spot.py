@@ -4,7 +4,7 @@ from hdrlab.capture import metering
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a shape, a position off its center, and a fraction of the image that is a whole
     number of pixels.
     """
@@ -28,14 +28,14 @@ def test_the_nearest_pixels_are_used(subject, rng):
 
     The center of a pixel is at (y + 1/2, x + 1/2), and the position is at (at[0] H, at[1] W).
     """
-    cases = [drawn(rng) for _ in range(12)]
-    shape, knobs = cases[0]
-    cases.append((shape, {**knobs, "share": 0.4 / (shape[0] * shape[1])}))  # still one pixel
-    for shape, knobs in cases:
-        w = finite(subject.spot(shape, **knobs), shape, what="w")
+    cases = [draw_inputs(rng) for _ in range(12)]
+    shape, options = cases[0]
+    cases.append((shape, {**options, "share": 0.4 / (shape[0] * shape[1])}))  # still one pixel
+    for shape, options in cases:
+        w = finite(subject.spot(shape, **options), shape, what="w")
         same(
             w > 0,
-            metering.spot(shape, **knobs) > 0,
+            metering.spot(shape, **options) > 0,
             0,
             what="the pixels with a weight above 0",
             picture=True,
@@ -50,8 +50,8 @@ def test_the_used_pixels_have_equal_weights_that_sum_to_one(subject, rng):
 
     w = 1 / k in the disc, and 0 elsewhere.
     """
-    shape, knobs = drawn(rng)
-    for share in (knobs["share"], 0.12, 1.0):  # a spot, a partial and an average meter
-        w = metering.spot(shape, at=knobs["at"], share=share)
-        came = subject.spot(shape, at=knobs["at"], share=share)
-        same(came, w, 1e-3 * float(w.max()), what=f"w for share = {share:.3g}", picture=True)
+    shape, options = draw_inputs(rng)
+    for share in (options["share"], 0.12, 1.0):  # a spot, a partial and an average meter
+        w = metering.spot(shape, at=options["at"], share=share)
+        answer = subject.spot(shape, at=options["at"], share=share)
+        same(answer, w, 1e-3 * float(w.max()), what=f"w for share = {share:.3g}", picture=True)

@@ -10,7 +10,7 @@ SHAPE = (24, 30)
 BINS = (12, 24, 36, 60)
 
 
-def drawn(rng, local=True):
+def draw_inputs(rng, local=True):
     """Return luminance, display luminance and a number of classes; no two pixels are alike."""
     L = np.exp(rng.normal(0, 1.5, SHAPE) + 0.1 * np.arange(SHAPE[1]))
     Ld = L / (1 + L)
@@ -33,7 +33,7 @@ def test_an_operator_draws_a_band(subject, rng):
 
     Sort the pixels by L, and take Ld in this order. Then each class is a part of the array.
     """
-    L, Ld, bins = drawn(rng)
+    L, Ld, bins = draw_inputs(rng)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
     _, came_lowest, came_highest = answer(subject, L, Ld, bins)
     same(came_lowest, lowest, 1e-5, what="the minimum of Ld", kind="curve")
@@ -48,7 +48,7 @@ def test_a_curve_draws_itself(subject, rng):
 
     All classes have the same number of pixels, also where L is rare.
     """
-    L, Ld, bins = drawn(rng, local=False)
+    L, Ld, bins = draw_inputs(rng, local=False)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
     _, came_lowest, came_highest = answer(subject, L, Ld, bins)
     same(came_lowest, lowest, 1e-5, what="the minimum of Ld of a curve", kind="curve")
@@ -63,7 +63,7 @@ def test_the_luminance_is_one_of_the_class(subject, rng):
 
     Return luminances, not their numbers or logarithms; the darkest class first.
     """
-    L, Ld, bins = drawn(rng)
+    L, Ld, bins = draw_inputs(rng)
     classes = np.sort(L, axis=None).reshape(bins, -1).astype(float)
     came = finite(answer(subject, L, Ld, bins)[0], (bins,), what="luminance").astype(float)
     inside = (came >= classes[:, 0] * 0.9999) & (came <= classes[:, -1] * 1.0001)

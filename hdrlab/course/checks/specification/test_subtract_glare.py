@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.radiance import flare
 
 
-def drawn(rng, channels=()):
+def draw_inputs(rng, channels=()):
     """Return F, G and the share of a map E that glare was added to."""
     shape = (24, 32, *channels)
     E = np.exp(rng.normal(0, 1, shape))
@@ -28,8 +28,8 @@ def test_the_map_is_that_to_which_the_glare_was_added(subject, rng):
 
     E = (F - s G) / (1 - s): the share that was scattered is missing in the rest.
     """
-    same_map(subject, *drawn(rng))
-    same_map(subject, *drawn(rng, (3,)), what="E in color")
+    same_map(subject, *draw_inputs(rng))
+    same_map(subject, *draw_inputs(rng, (3,)), what="E in color")
 
 
 @points(3)
@@ -40,15 +40,15 @@ def test_no_radiance_is_negative(subject, rng):
 
     Use at least F / 1000 in place of F - s G, and then divide by 1 - s.
     """
-    F, G, share = drawn(rng)
+    F, G, share = draw_inputs(rng)
     below = (rng.uniform(0.2, 0.9, F.shape) * share * G).astype(np.float32)
     E = flare.subtract_glare(below, G, share)
-    came = finite(subject.subtract_glare(below, G, share), E.shape, what="E").astype(float)
-    same(came / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is below s G")
+    answer = finite(subject.subtract_glare(below, G, share), E.shape, what="E").astype(float)
+    same(answer / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is below s G")
     just_above = (share * G * 1.0004).astype(np.float32)
     E = flare.subtract_glare(just_above, G, share)
-    came = finite(subject.subtract_glare(just_above, G, share), E.shape, what="E").astype(float)
-    same(came / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is just above s G")
+    answer = finite(subject.subtract_glare(just_above, G, share), E.shape, what="E").astype(float)
+    same(answer / E, np.ones(E.shape), 1e-2, what="E / the right E, where F is just above s G")
     half_dark = np.where(rng.random(F.shape) < 0.5, below, F)
     same_map(subject, half_dark, G, share, what="E of a map with dark places")
 
@@ -61,5 +61,5 @@ def test_without_glare_the_map_stays(subject, rng):
 
     If your result differs, there is a term without s.
     """
-    F, G, _ = drawn(rng)
+    F, G, _ = draw_inputs(rng)
     same_map(subject, F, G, 0.0, what="E for a share of 0")

@@ -12,10 +12,11 @@ HALF = 0.502
 def same_table(subject, delta, what="the table", **shape):
     """Compare a table with the curve, whose halves may be rounded either way; values must be whole."""
     expected = relight.curve(delta, **shape)
-    came = finite(subject.table(delta, **shape), (256,), what=what).astype(float)
-    same(came, expected, HALF, what=what, kind="curve")
+    answer = finite(subject.table(delta, **shape), (256,), what=what).astype(float)
+    same(answer, expected, HALF, what=what, kind="curve")
     require(
-        np.all(came == np.round(came)), f"{what}: expected whole pixel values, got {came[1]:.6g}"
+        np.all(answer == np.round(answer)),
+        f"{what}: expected whole pixel values, got {answer[1]:.6g}",
     )
 
 
@@ -63,5 +64,5 @@ def test_black_stays_black_and_white_stays_white(subject, rng):
     If your table has NaN there, set these two values by hand.
     """
     for delta in (-5.0, float(rng.uniform(4, 6))):
-        came = finite(subject.table(delta), (256,), what="the table")
-        same(came[[0, -1]], [0, 255], 0, what="the values for black and white")
+        answer = finite(subject.table(delta), (256,), what="the table")
+        same(answer[[0, -1]], [0, 255], 0, what="the values for black and white")

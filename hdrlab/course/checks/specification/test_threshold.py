@@ -7,7 +7,7 @@ import numpy as np
 from hdrlab.course.checks.compare import numbers, points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a mostly dark photo with an odd number of pixels."""
     return np.clip(255 * rng.beta(1.2, 4.0, (101, 77)), 0, 255).astype(np.uint8)
 
@@ -34,7 +34,7 @@ def test_the_threshold_is_the_median(subject, rng):
     t is the lowest pixel value whose cumulative count reaches q times the number of pixels.
     """
     for _ in range(3):
-        Y = drawn(rng)
+        Y = draw_inputs(rng)
         same(subject.threshold(histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 
@@ -46,7 +46,7 @@ def test_any_fraction_can_be_used(subject, rng):
 
     Compare the cumulative histogram with q times its last value.
     """
-    Y = drawn(rng)
+    Y = draw_inputs(rng)
     for q in (0.17, 0.33, 0.83):
         expected = np.sort(Y.ravel())[int(np.ceil(q * Y.size)) - 1]
         same(subject.threshold(histogram(Y), q), expected, 0, what=f"t of q = {q}")
@@ -61,7 +61,7 @@ def test_several_fractions_give_one_value_each(subject, rng):
     np.searchsorted accepts an array as well as a number. np.argmax of a comparison needs q[:,
     None].
     """
-    Y = drawn(rng)
+    Y = draw_inputs(rng)
     q = np.array([0.17, 0.5, 0.83])
     expected = [numbers(subject.threshold(histogram(Y), float(one)), what="t").item() for one in q]
     same(subject.threshold(histogram(Y), q), expected, 0, what="the thresholds for three fractions")
@@ -75,7 +75,7 @@ def test_a_larger_photo_of_the_same_scene_has_the_same_threshold(subject, rng):
 
     Do not compare the cumulative counts with q itself.
     """
-    Y = drawn(rng)
+    Y = draw_inputs(rng)
     same(subject.threshold(7 * histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 

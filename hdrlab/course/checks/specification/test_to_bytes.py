@@ -6,11 +6,11 @@ from hdrlab.course.checks.compare import AnswerMismatch, points, require, same
 from hdrlab.io.maps import pfm
 
 
-def drawn(rng, channels=()):
+def draw_inputs(rng, channels=()):
     return (10.0 ** rng.uniform(-3, 3, (5, 7, *channels))).astype(np.float32)
 
 
-def asked(subject, E):
+def get_answer(subject, E):
     """Return the bytes of the student's file."""
     data = subject.to_bytes(E)
     require(
@@ -31,7 +31,7 @@ def as_read(data):
 
 def check_one_input(subject, E):
     """Read the student's file, because a header may be written in several ways."""
-    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the map read back")
+    same(as_read(get_answer(subject, E)), E, 1e-6 * E.max(), what="the map read back")
 
 
 def test_the_file_starts_with_the_type_of_map(subject, rng):
@@ -41,8 +41,10 @@ def test_the_file_starts_with_the_type_of_map(subject, rng):
 
     Start the bytes of a gray map with b'Pf'.
     """
-    for E, kind in ((drawn(rng), b"Pf"), (drawn(rng, (3,)), b"PF")):
-        require(asked(subject, E)[:2] == kind, f"expected a file that starts with {kind.decode()}")
+    for E, kind in ((draw_inputs(rng), b"Pf"), (draw_inputs(rng, (3,)), b"PF")):
+        require(
+            get_answer(subject, E)[:2] == kind, f"expected a file that starts with {kind.decode()}"
+        )
 
 
 @points(6)
@@ -53,8 +55,14 @@ def test_a_gray_map_is_read_back_the_right_way_up(subject, rng):
 
     Write E[::-1].
     """
-    E = drawn(rng)
-    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the gray map read back", picture=True)
+    E = draw_inputs(rng)
+    same(
+        as_read(get_answer(subject, E)),
+        E,
+        1e-6 * E.max(),
+        what="the gray map read back",
+        picture=True,
+    )
 
 
 @points(4)
@@ -65,8 +73,8 @@ def test_a_color_map_is_read_back(subject, rng):
 
     The second line has the width first, then the height.
     """
-    E = drawn(rng, (3,))
-    same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the color map read back")
+    E = draw_inputs(rng, (3,))
+    same(as_read(get_answer(subject, E)), E, 1e-6 * E.max(), what="the color map read back")
 
 
 @points(3)
@@ -77,8 +85,8 @@ def test_the_file_has_four_bytes_per_value(subject, rng):
 
     Use E.astype('<f4').tobytes(). float64 takes twice as many bytes.
     """
-    E = drawn(rng)
-    data = asked(subject, E)
+    E = draw_inputs(rng)
+    data = get_answer(subject, E)
     start = data.find(b"\n", data.find(b"\n", data.find(b"\n") + 1) + 1) + 1
     same(
         len(data) - start,
@@ -96,8 +104,8 @@ def test_the_sign_of_the_scale_is_the_byte_order(subject, rng):
 
     Write -1.0 as the scale, and the values as '<f4'.
     """
-    E = drawn(rng)
-    data = asked(subject, E)
+    E = draw_inputs(rng)
+    data = get_answer(subject, E)
     scale = float(data.split(b"\n")[2])
     values = np.frombuffer(data[-4 * E.size :], "<f4" if scale < 0 else ">f4").reshape(E.shape)
     same(

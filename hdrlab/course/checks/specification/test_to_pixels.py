@@ -8,7 +8,7 @@ from hdrlab.course.checks.compare import finite, points, require, same
 from hdrlab.io.maps import rgbe
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return E (9, 11, 3) in which no brightest channel is so close to a power of 2 that
     rounding reaches it.
     """
@@ -17,16 +17,16 @@ def drawn(rng):
     return (brightest * channels).astype(np.float32)
 
 
-def asked(subject, E):
+def get_answer(subject, E):
     pixels = finite(subject.to_pixels(E), (*E.shape[:2], 4), what="the pixels").astype(float)
-    said = f"expected whole numbers from 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}"
-    require(((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all(), said)
+    message = f"expected whole numbers from 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}"
+    require(((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all(), message)
     return pixels
 
 
 def check_one_input(subject, E):
     """Compare what the bytes mean, because a mantissa may be rounded up or down."""
-    pixels = asked(subject, E)
+    pixels = get_answer(subject, E)
     m, e = np.split(pixels, [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
     scale = np.where(brightest > 0, brightest, 1)
@@ -41,7 +41,7 @@ def test_every_pixel_is_four_bytes(subject, rng):
 
     All values are whole numbers from 0 to 255.
     """
-    asked(subject, drawn(rng))
+    get_answer(subject, draw_inputs(rng))
 
 
 @points(4)
@@ -52,13 +52,13 @@ def test_decoding_restores_the_radiance_to_one_part_in_128(subject, rng):
 
     m = floor(256 E / 2^(e - 128)). Do not forget the 256 or the 128.
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     E[0, :3] = [
         [1.999, 0.5, 0.25],
         [0.03, 0.9985, 0.4],
         [0.1, 0.2, 3.997],
     ]  # a mantissa of 255.9 must not be rounded up to 256
-    m, e = np.split(asked(subject, E), [3], axis=-1)
+    m, e = np.split(get_answer(subject, E), [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
     same(
         m / 256 * 2.0 ** (e - 128) / brightest,
@@ -76,10 +76,10 @@ def test_the_largest_mantissa_is_128_or_more(subject, rng):
 
     The brightest channel is f 2^x with 0.5 <= f < 1, and e = x + 128.
     """
-    pixels = asked(subject, drawn(rng))
+    pixels = get_answer(subject, draw_inputs(rng))
     largest = pixels[..., :3].max(axis=-1)
-    said = f"expected a largest mantissa of 128 or more in every pixel, got {largest.min():g}"
-    require((largest >= 128).all(), said)
+    message = f"expected a largest mantissa of 128 or more in every pixel, got {largest.min():g}"
+    require((largest >= 128).all(), message)
 
 
 @points(3)
@@ -90,12 +90,12 @@ def test_twice_the_light_adds_one_to_the_exponent_and_black_is_zero(subject, rng
 
     Avoid log2(0): use np.where for black pixels.
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     E[2, 3] = 0
     truth = rgbe.to_pixels(E).astype(float)
     lit = E.max(axis=-1, keepdims=True) > 0
-    one = asked(subject, E)
-    two = asked(subject, 2 * E)
+    one = get_answer(subject, E)
+    two = get_answer(subject, 2 * E)
     same(
         two - one,
         lit * np.array([0, 0, 0, 1]),
@@ -113,12 +113,12 @@ def test_an_exact_power_of_two_is_no_exception(subject, rng):
 
     Use np.frexp, or floor(log2(...)) + 1. ceil(log2(...)) is one too small for exact powers.
     """
-    E = drawn(rng)
+    E = draw_inputs(rng)
     for k in range(6):
         E[k] *= np.float32(2.0 ** (k - 3)) / E[k].max(axis=-1, keepdims=True)
     brightest = E.max(axis=-1)
     is_power = brightest == 2.0 ** np.round(np.log2(brightest))
-    pixels = asked(subject, E)
+    pixels = get_answer(subject, E)
     largest = pixels[..., :3].max(axis=-1)
     same(largest, np.full(largest.shape, 128), 0, what="the largest mantissa", where=is_power)
     exponent = np.log2(brightest) + 129

@@ -5,7 +5,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, require, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     pixels = rng.integers(0, 256, (9, 11, 4), dtype=np.uint8)
     pixels[..., 3] = rng.integers(110, 146, (9, 11))
     return pixels
@@ -18,7 +18,7 @@ def test_every_pixel_is_three_radiances(subject, rng):
 
     No value is below 0.
     """
-    E = finite(subject.to_radiance(drawn(rng)), (9, 11, 3), what="E")
+    E = finite(subject.to_radiance(draw_inputs(rng)), (9, 11, 3), what="E")
     require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
 
 
@@ -44,10 +44,10 @@ def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
 
     Convert the exponent to int or float before you subtract 128.
     """
-    pixels = drawn(rng)
+    pixels = draw_inputs(rng)
     scale = 2.0 ** (pixels[..., 3:].astype(float) - 128)
-    came = finite(subject.to_radiance(pixels), (9, 11, 3), what="E")
-    same(came / scale, pixels[..., :3] / 256, 0.003, what="E 2^(128 - e)")
+    answer = finite(subject.to_radiance(pixels), (9, 11, 3), what="E")
+    same(answer / scale, pixels[..., :3] / 256, 0.003, what="E 2^(128 - e)")
 
 
 @points(2)
@@ -58,10 +58,12 @@ def test_the_exponent_0_is_black(subject, rng):
 
     E = 0 where e = 0.
     """
-    pixels = drawn(rng)
+    pixels = draw_inputs(rng)
     black = rng.random((9, 11)) < 0.3
     pixels[black, 3] = 0
-    came = finite(subject.to_radiance(pixels), (9, 11, 3), what="E")
-    same(came[black], np.zeros((black.sum(), 3)), 1e-37, what="E where the exponent is 0")
+    answer = finite(subject.to_radiance(pixels), (9, 11, 3), what="E")
+    same(answer[black], np.zeros((black.sum(), 3)), 1e-37, what="E where the exponent is 0")
     scale = 2.0 ** (pixels[..., 3:].astype(float) - 128)
-    same((came / scale)[~black], pixels[~black][:, :3] / 256, 0.003, what="E 2^(128 - e) elsewhere")
+    same(
+        (answer / scale)[~black], pixels[~black][:, :3] / 256, 0.003, what="E 2^(128 - e) elsewhere"
+    )

@@ -6,7 +6,7 @@ from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.response import robertson
 
 
-def drawn(rng, N=4000, P=4):
+def draw_inputs(rng, N=4000, P=4):
     """Return Z (N, P), t (P,) and E (N,), with pixels at all levels."""
     Z = rng.integers(0, 256, (N, P)).astype(np.intp)
     return Z, rng.uniform(0.1, 2, P), rng.uniform(0.2, 3, N)
@@ -19,7 +19,7 @@ def test_every_level_has_a_response(subject, rng):
 
     np.bincount with minlength=n counts and sums by pixel value.
     """
-    Z, t, E = drawn(rng)
+    Z, t, E = draw_inputs(rng)
     finite(subject.update(Z, t, E), (256,), what="f^-1")
 
 
@@ -31,7 +31,7 @@ def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
 
     Divide by the number of pixels of this value, not by the number of samples.
     """
-    Z, t, E = drawn(rng)
+    Z, t, E = draw_inputs(rng)
     same(subject.update(Z, t, E), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
@@ -61,7 +61,7 @@ def test_a_sample_without_irradiance_is_left_out(subject, rng):
 
     Leave out the rows of Z where E is NaN.
     """
-    Z, t, E = drawn(rng)
+    Z, t, E = draw_inputs(rng)
     more = np.concatenate([Z, Z[:50]])
     nan = np.concatenate([E, np.full(50, np.nan)])
     same(subject.update(more, t, nan), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
@@ -74,6 +74,6 @@ def test_a_level_without_pixels_is_nan(subject, rng):
 
     Return NaN there. The next step interpolates it.
     """
-    Z, t, E = drawn(rng)
+    Z, t, E = draw_inputs(rng)
     Z = Z // 2 * 2
     same(subject.update(Z, t, E, n=256), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")

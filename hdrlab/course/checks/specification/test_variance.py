@@ -7,7 +7,7 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return exposures and their steps (24, 30), the electrons at exposure 1, and the read noise
     in electrons.
     """
@@ -20,9 +20,9 @@ def drawn(rng):
     )
 
 
-def alike(came, V, what):
+def alike(answer, V, what):
     """Compare by the ratio, because errors of a variance are factors."""
-    ratio = finite(came, V.shape, what=what) / V
+    ratio = finite(answer, V.shape, what=what) / V
     same(ratio, np.ones(V.shape), 0.01, what=f"{what} / the correct V", picture=True)
 
 
@@ -33,7 +33,7 @@ def test_without_any_cause_there_is_no_noise(subject, rng):
 
     The result has the shape of X. Do not add anything to the three terms.
     """
-    X, _, N, _ = drawn(rng)
+    X, _, N, _ = draw_inputs(rng)
     same(subject.variance(0 * X, 0 * X, N, 0.0), 0 * X, 1e-12, what="V without noise", picture=True)
 
 
@@ -46,7 +46,7 @@ def test_photon_noise_grows_with_the_light(subject, rng):
 
     Var(x / N) = Var(x) / N^2, so the first term is X N / N^2.
     """
-    X, _, N, _ = drawn(rng)
+    X, _, N, _ = draw_inputs(rng)
     alike(subject.variance(X, 0 * X, N, 0.0), X / N, "V of photon noise alone")
 
 
@@ -59,7 +59,7 @@ def test_read_noise_does_not_depend_on_the_light(subject, rng):
 
     The second term is (R / N)^2, for any X.
     """
-    X, _, N, R = drawn(rng)
+    X, _, N, R = draw_inputs(rng)
     alike(
         subject.variance(0 * X, 0 * X, N, R),
         np.full(X.shape, (R / N) ** 2),
@@ -76,7 +76,7 @@ def test_rounding_noise_is_that_of_a_uniform_distribution(subject, rng):
 
     The third term is D^2 / 12.
     """
-    X, D, N, _ = drawn(rng)
+    X, D, N, _ = draw_inputs(rng)
     alike(subject.variance(0 * X, D, N, 0.0), D**2 / 12, "V of rounding alone")
 
 
@@ -88,5 +88,5 @@ def test_variances_of_independent_causes_add(subject, rng):
 
     V = X / N + (R / N)^2 + D^2 / 12.
     """
-    X, D, N, R = drawn(rng)
+    X, D, N, R = draw_inputs(rng)
     alike(subject.variance(X, D, N, R), X / N + (R / N) ** 2 + D**2 / 12, "V of all three causes")

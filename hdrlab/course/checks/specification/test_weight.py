@@ -7,7 +7,7 @@ from hdrlab.course.checks.compare import points, same
 INNER = (slice(1, -1), slice(1, -1))
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return F (3, H, W)."""
     shape = (3, int(rng.integers(12, 20)), int(rng.integers(20, 30)))
     return rng.uniform(0.05, 0.95, shape).astype(np.float32)
@@ -25,8 +25,8 @@ def fused(F, powers):
 def compared(subject, F, powers, what):
     """Compare W away from the border."""
     expected = fused(F, powers)
-    came = np.asarray(subject.weight(F, powers))[INNER]
-    same(came, expected, 2e-3 * float(expected.max()), what=what, picture=True)
+    answer = np.asarray(subject.weight(F, powers))[INNER]
+    same(answer, expected, 2e-3 * float(expected.max()), what=what, picture=True)
 
 
 def is_valid_input(F, powers=(1, 1, 1)):
@@ -42,7 +42,7 @@ def test_contrast_is_the_absolute_laplacian_of_gray(subject, rng):
 
     C = |up + down + left + right - 4 Y|, of the gray Y.
     """
-    compared(subject, drawn(rng), (1, 0, 0), "W from contrast alone")
+    compared(subject, draw_inputs(rng), (1, 0, 0), "W from contrast alone")
 
 
 @points(3)
@@ -53,7 +53,7 @@ def test_saturation_is_the_standard_deviation_of_the_channels(subject, rng):
 
     Divide the sum of the three squared differences by 3.
     """
-    compared(subject, drawn(rng), (0, 1, 0), "W from saturation alone")
+    compared(subject, draw_inputs(rng), (0, 1, 0), "W from saturation alone")
 
 
 @points(3)
@@ -64,7 +64,7 @@ def test_exposedness_is_a_product_over_the_channels(subject, rng):
 
     E = product of exp(-(F - 0.5)^2 / (2 0.2^2)) over R, G and B.
     """
-    compared(subject, drawn(rng), (0, 0, 1), "W from exposedness alone")
+    compared(subject, draw_inputs(rng), (0, 0, 1), "W from exposedness alone")
 
 
 @points(3)
@@ -76,4 +76,4 @@ def test_the_weight_is_the_product_of_all_three_measures(subject, rng):
     W = C^a S^b E^c with the powers (a, b, c).
     """
     for powers in ((1, 1, 1), (0.5, 2, 1)):
-        compared(subject, drawn(rng), powers, f"W with powers {powers}")
+        compared(subject, draw_inputs(rng), powers, f"W with powers {powers}")
