@@ -114,9 +114,8 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
 def mean_known(planes: F32, known: Mask) -> F32:
     """Return the mean of the known pixels of each 3 x 3, (H, W, C); 0 where there is none."""
     share = scipy.ndimage.uniform_filter(known.astype(np.float32), 3, mode="constant")
-    light = np.where(known[..., None], planes, 0).astype(
-        np.float64
-    )  # sums of which float32 may not hold
+    # sums of which float32 may not hold
+    light = np.where(known[..., None], planes, 0).astype(np.float64)
     total = scipy.ndimage.uniform_filter(light, (3, 3, 1), mode="constant")
     return np.where(share[..., None] > 0.05, total / np.maximum(share, 0.05)[..., None], 0)
 

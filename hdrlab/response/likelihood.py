@@ -25,9 +25,8 @@ from scipy.special import ndtr
 from hdrlab.core.arrays import F64, ArrayLike, Indices
 from hdrlab.response import mitsunaga, polynomial
 
-EDGES = np.concatenate(
-    [[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]]
-)  # of the levels' cells, in M
+# of the levels' cells, in M
+EDGES = np.concatenate([[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]])
 # probability of a level that the noise does not explain, so that a pixel that moved has no influence
 OUTLIER_PROBABILITY = 1e-12
 
@@ -60,9 +59,8 @@ def nodes(c: F64, tau: F64, count: int) -> Nodes:
     of f^-1.
     """
     x = (np.arange(count) + 0.5) / count
-    clipped_next = np.append(
-        np.exp(tau[:-1] - tau[1:]), 0
-    )  # exposure from which only this frame is left
+    # exposure from which only this frame is left
+    clipped_next = np.append(np.exp(tau[:-1] - tau[1:]), 0)
     frames = [x[mitsunaga.value(x, c) > exposure] for exposure in clipped_next]
     counts = [len(frame) for frame in frames]
     return Nodes(np.concatenate(frames), np.repeat(np.arange(len(frames)), counts))
@@ -113,9 +111,8 @@ def table(m: F64, sigma: float) -> F64:
 
 def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Support:
     """Return for each pixel the nodes with at least that fraction of its best node's likelihood."""
-    tables = P.swapaxes(1, 2).astype(
-        np.float32
-    )  # (P, 256, K): a pixel's likelihood is a product of rows
+    # (P, 256, K): a pixel's likelihood is a product of rows
+    tables = P.swapaxes(1, 2).astype(np.float32)
     kept = []
     for z in np.split(Z, range(block, len(Z), block)):
         likelihood = np.prod(
@@ -168,8 +165,7 @@ def density(weights: F64, near: Support, count: int) -> F64:
 def stiffness(A: int, frames: int, trust: float) -> F64:
     """Return the (A, A) matrix of a prior on theta = (c, tau[:-1], ln sigma): each ln R to within `trust`."""
     D = np.zeros((frames - 1, A))
-    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(
-        frames - 1, frames, 1
-    )  # tau_q - tau_q+1
+    # tau_q - tau_q+1
+    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(frames - 1, frames, 1)
     D[:, -1] = 0  # where ln sigma stands, for tau of the longest frame is 0
     return D.T @ D / trust**2

@@ -43,9 +43,8 @@ def laplacian(u: Array) -> Array:
 
 def eigenvalues(n: int) -> Array:
     """Return 2 cos(pi i / n) - 2, i = 0 ... n - 1: what `laplacian` makes of cos(pi i (x + 1/2) / n)."""
-    return (
-        -4 * np.sin(np.pi * np.arange(n) / (2 * n)) ** 2
-    )  # equal to it, and exact where it is small
+    # equal to it, and exact where it is small
+    return -4 * np.sin(np.pi * np.arange(n) / (2 * n)) ** 2
 
 
 def solve(divG: Array) -> Array:

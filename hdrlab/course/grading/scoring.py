@@ -36,9 +36,8 @@ def split_points(points: Fraction, weights: Sequence[Fraction]) -> list[Fraction
     total_weight = sum(weights) or 1
     exact_halves = [2 * points * weight / total_weight for weight in weights]
     whole_halves = [floor(halves) for halves in exact_halves]
-    by_remainder = sorted(
-        range(len(weights)), key=lambda k: whole_halves[k] - exact_halves[k]
-    )  # the largest remainder first
+    # the largest remainder first
+    by_remainder = sorted(range(len(weights)), key=lambda k: whole_halves[k] - exact_halves[k])
     left_over = floor(2 * points) - sum(whole_halves)
     for k in by_remainder[:left_over]:
         whole_halves[k] += 1

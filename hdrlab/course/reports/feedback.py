@@ -14,9 +14,8 @@ from hdrlab.course.grading import results
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 
-FORBIDDEN = re.compile(
-    "[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
-)  # what XML 1.0 cannot hold
+# what XML 1.0 cannot hold
+FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def fragment(result: results.Result, *, private: bool = False) -> str:

@@ -43,9 +43,8 @@ def formula(tex: str, *, inline: bool = True) -> str:
     >>> html.count("<svg"), html.count("<math")
     (1, 1)
     """
-    with (
-        warnings.catch_warnings()
-    ):  # it looks for its font in a way that Python 3.11 and 3.12 warn of
+    # it looks for its font in a way that Python 3.11 and 3.12 warn of
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
         import ziamath
 

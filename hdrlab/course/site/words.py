@@ -18,9 +18,8 @@ GREEK = {
     "τ": "tau",
 }
 PYTHON_LAMBDA = re.compile(r"\blambda\b[\w ,*=.]*:")
-FUNCTION_OF_LETTER = re.compile(
-    r"\b([A-Za-z])\(([A-Za-z])(?:_\{?\w+\}?)?\)"
-)  # g(Z), and of one pixel g(Z_{ij})
+# g(Z), and of one pixel g(Z_{ij})
+FUNCTION_OF_LETTER = re.compile(r"\b([A-Za-z])\(([A-Za-z])(?:_\{?\w+\}?)?\)")
 SPLITTER_SCRIPT = Path(__file__).with_name("split_query.js")  # the same in the browser
 
 

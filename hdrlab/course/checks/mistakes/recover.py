@@ -25,9 +25,8 @@ def one_curve_for_all(images, times, *, order=5, eps=0.001):
     t = np.asarray(times, np.float64)
     images = images[np.argsort(t)]
     t = np.sort(t)
-    every = max(
-        1, int(np.sqrt(images.size / len(t) / 12_000))
-    )  # an even grid of some thousand pixels
+    # an even grid of some thousand pixels
+    every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))
     M = (
         images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
         / np.iinfo(images.dtype).max
@@ -60,9 +59,8 @@ def times_believed(images, times, *, order=5, eps=0.001):
     t = np.asarray(times, np.float64)
     images = images[np.argsort(t)]
     t = np.sort(t)
-    every = max(
-        1, int(np.sqrt(images.size / len(t) / 12_000))
-    )  # an even grid of some thousand pixels
+    # an even grid of some thousand pixels
+    every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))
     M = (
         images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
         / np.iinfo(images.dtype).max
@@ -85,9 +83,8 @@ def response_not_inverse(images, times, *, order=5, eps=0.001):
     t = np.asarray(times, np.float64)
     images = images[np.argsort(t)]
     t = np.sort(t)
-    every = max(
-        1, int(np.sqrt(images.size / len(t) / 12_000))
-    )  # an even grid of some thousand pixels
+    # an even grid of some thousand pixels
+    every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))
     M = (
         images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T
         / np.iinfo(images.dtype).max

@@ -27,9 +27,8 @@ def periodic(divG):
 )
 def axes_swapped(divG):
     def eigenvalues(n, side):
-        return (
-            -4 * np.sin(np.pi * np.arange(n) / (2 * side)) ** 2
-        )  # the same, and exact where it is small
+        # the same, and exact where it is small
+        return -4 * np.sin(np.pi * np.arange(n) / (2 * side)) ** 2
 
     coefficients = dctn(divG, type=2)
     factors = np.add.outer(

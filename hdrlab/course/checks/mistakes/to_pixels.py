@@ -41,9 +41,8 @@ def mantissa_rounds_to_256(E):
     _, exponent = np.frexp(brightest)
     mantissa = np.round(np.ldexp(E, 8 - exponent))
     pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
-    return (
-        np.where(brightest < 1e-32, 0, pixels).astype(np.int64).astype(np.uint8)
-    )  # Ward's limit: below it, black
+    # Ward's limit: below it, black
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.int64).astype(np.uint8)
 
 
 @mistake(

@@ -21,7 +21,8 @@ def draw_inputs(rng, bins=50):
         h = np.round(20 + tall + low + rng.uniform(0, 3, bins))
         db = float(rng.uniform(0.18, 0.24))
         trims = [
-            (one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)
+            (state.trimmings / h.sum(), state.trimmings / state.T)
+            for state in ward.adjust_steps(h, db, D)
         ]
         if all(first > 0.028 or own < 0.022 for first, own in trims) and len(trims) > 3:
             return h, db, D
@@ -30,14 +31,18 @@ def draw_inputs(rng, bins=50):
 def get_answer(subject, h, db, D, **options):
     """Return h after each trim."""
     answer = states(subject.adjust_steps(h, db, D, **options))
-    each = [one[0] if isinstance(one, tuple | list) else one for one in answer]
-    found = [finite(one, h.shape, what="h").astype(float) for one in each]
+    raw_histograms = [state[0] if isinstance(state, tuple | list) else state for state in answer]
+    histograms = [finite(state, h.shape, what="h").astype(float) for state in raw_histograms]
     low = h < 25  # far below every ceiling
     message = "h: expected bins far below the ceiling to stay as they are, got smaller ones"
     require(
-        np.all(found[-1][low] >= 0.9 * h[low]), message, expected=h, came=found[-1], kind="curve"
+        np.all(histograms[-1][low] >= 0.9 * h[low]),
+        message,
+        expected=h,
+        came=histograms[-1],
+        kind="curve",
     )
-    return found
+    return histograms
 
 
 # right iterations may differ in their steps, which small inputs show most
@@ -138,7 +143,7 @@ def test_each_state_says_what_was_trimmed_at_which_ceiling(subject, rng):
     """
     h, db, D = draw_inputs(rng)
     first, second = (
-        parts(one, 4, what="a state") for one in states(subject.adjust_steps(h, db, D))[:2]
+        parts(state, 4, what="a state") for state in states(subject.adjust_steps(h, db, D))[:2]
     )
     T = h.sum()
     cut = np.maximum(h - T * db / D, 0).sum()
@@ -163,7 +168,7 @@ def test_tolerance_decides_when_to_stop(subject, rng):
     """
     h, db, D = draw_inputs(rng)
     for tolerance, width in ((0.2, db), (0.005, db), (0.05, db / 20)):
-        expected = [one.h for one in ward.adjust_steps(h, width, D, tolerance=tolerance)]
+        expected = [state.h for state in ward.adjust_steps(h, width, D, tolerance=tolerance)]
         answer = states(subject.adjust_steps(h, width, D, tolerance=tolerance))
         what = f"the number of states with tolerance={tolerance} and db={width:.3g}"
         same(len(answer), len(expected), 1, what=what)  # 1: of which T the fraction is taken

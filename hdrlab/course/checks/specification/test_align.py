@@ -32,17 +32,17 @@ def scene(rng, *, fine=0.05):
 
 def photographs(rng, E, offsets, times, noise=0.004):
     """Return 8-bit photos (P, H, W) that `offsets` align."""
-    taken = []
+    photos = []
     for (dy, dx), t in zip(offsets, times, strict=True):
         X = 0.2 * t * E[MARGIN + dy : MARGIN + dy + H, MARGIN + dx : MARGIN + dx + W]
         X = X + noise * np.sqrt(X + 0.01) * rng.standard_normal(X.shape)
-        taken.append((np.clip(X, 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8))
-    return np.stack(taken)
+        photos.append((np.clip(X, 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8))
+    return np.stack(photos)
 
 
-def draw_inputs(rng, least, most):
+def draw_inputs(rng, min_shift, max_shift):
     """Return an offset (dy, dx), each of `least` to `most` pixels in a random direction."""
-    return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
+    return tuple((rng.choice([-1, 1], 2) * rng.integers(min_shift, max_shift + 1, 2)).tolist())
 
 
 # on a few pixels many offsets are equally good, and right functions find different ones
@@ -83,10 +83,9 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
     XOR the bitmaps, and AND the result with both exclusion bitmaps. The candidate with the smallest
     fraction of differing pixels wins.
     """
-    for least, times in zip(
-        (16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True
-    ):  # 16: on all levels
-        dy, dx = draw_inputs(rng, least, 20)
+    # 16: on all levels
+    for min_shift, times in zip((16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True):
+        dy, dx = draw_inputs(rng, min_shift, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
         answer = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
         same(
@@ -177,9 +176,9 @@ def test_a_bracket_is_aligned_in_pairs_to_its_middle_image(subject, rng):
 
     Sort by brightness to form the pairs, but return the offsets in the order of the input images.
     """
-    true = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
-    true -= true[2]
-    images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))
+    true_offsets = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
+    true_offsets -= true_offsets[2]
+    images = photographs(rng, scene(rng), true_offsets, 2.0 ** np.arange(-2, 3))
     # the image of middle brightness is neither the first of the list nor in its middle
     order = np.insert(rng.permutation([0, 1, 3, 4]), rng.choice([1, 3, 4]), 2)
-    same(subject.align(images[order], bits=BITS), true[order], 1, what="the offsets")
+    same(subject.align(images[order], bits=BITS), true_offsets[order], 1, what="the offsets")

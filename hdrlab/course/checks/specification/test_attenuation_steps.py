@@ -24,7 +24,8 @@ def draw_inputs(rng, shape=(128, 144)):
 def get_answer(subject, lL, **options):
     """Return the states, and ln Phi of the last one, at full size."""
     answer = [
-        parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **options))
+        parts(state, 5, what="a state")
+        for state in states(subject.attenuation_steps(lL, **options))
     ]
     Phi = finite(answer[-1][4], lL.shape, what="Phi").astype(float)
     require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi)
@@ -44,7 +45,7 @@ def test_there_is_a_state_for_each_level(subject, rng):
     """
     lL = draw_inputs(rng)
     answer, _ = get_answer(subject, lL, alpha=0.1, beta=0.9)
-    rows = np.array([np.shape(one[3])[0] for one in answer])
+    rows = np.array([np.shape(state[3])[0] for state in answer])
     same(rows, [32, 64, 128], 0, what="the number of rows of phi in each state")
 
 
@@ -78,9 +79,14 @@ def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
     lL = draw_inputs(rng)
     _, none = get_answer(subject, lL, alpha=0.1, beta=1.0)
     same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
-    one, other = (get_answer(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
+    weaker, stronger = (get_answer(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
     expected = np.full(lL.shape, 3 * 0.2 * np.log(3))
-    same(other - one, expected, 0.05, what="ln Phi with alpha = 0.3 minus ln Phi with alpha = 0.1")
+    same(
+        stronger - weaker,
+        expected,
+        0.05,
+        what="ln Phi with alpha = 0.3 minus ln Phi with alpha = 0.1",
+    )
 
 
 @points(4)
@@ -93,14 +99,14 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
     """
     lL = draw_inputs(rng)
     answer, _ = get_answer(subject, lL, alpha=0.1, beta=0.8)
-    for one in answer:
-        slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
-        phi = finite(one[3], np.shape(one[1]), what="phi").astype(float)
+    for state in answer:
+        slope = finite(state[2], np.shape(state[1]), what="the slope").astype(float)
+        phi = finite(state[3], np.shape(state[1]), what="phi").astype(float)
         steep = slope > 0.2 * slope.mean()
         expected = np.where(steep, (np.maximum(slope, 1e-9) / (0.1 * slope.mean())) ** -0.2, np.nan)
-        what = f"ln phi of level {int(one[0])}"
+        what = f"ln phi of level {int(state[0])}"
         same(np.log(phi), np.log(expected), 0.02, what=what, picture=True, where=steep)
-        level = fattal.slope(one[1].astype(np.float32), 0)
+        level = fattal.slope(state[1].astype(np.float32), 0)
         inner = (slice(4, -4), slice(4, -4))
         fitted = (slope * level).sum() / (level * level).sum() * level
         steps, expected = (picture[inner] / level.mean() for picture in (slope, fitted))
@@ -138,11 +144,11 @@ def test_a_slope_below_noise_counts_as_noise(subject, rng):
     """
     noise = float(rng.uniform(0.3, 0.6))
     answer, _ = get_answer(subject, draw_inputs(rng), alpha=0.1, beta=0.8, noise=noise)
-    for one in answer:
-        slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
+    for state in answer:
+        slope = finite(state[2], np.shape(state[1]), what="the slope").astype(float)
         expected = -0.2 * np.log(np.maximum(slope / slope.mean(), noise) / 0.1)
-        what = f"ln phi of level {int(one[0])} with noise={noise:.2g}"
-        same(np.log(np.asarray(one[3], float)), expected, 0.02, what=what, picture=True)
+        what = f"ln phi of level {int(state[0])} with noise={noise:.2g}"
+        same(np.log(np.asarray(state[3], float)), expected, 0.02, what=what, picture=True)
 
 
 @points(1, needs="test_the_last_phi_combines_all_levels")

@@ -52,10 +52,9 @@ def test_the_photos_cover_the_whole_scene_without_one_to_spare(subject, rng):
     n = 1 + ceil((scene - usable) / (usable - overlap)).
     """
     scenes = [draw_inputs(rng) for _ in range(8)]
-    found = [
-        subject.count(*one) for one in scenes
-    ]  # call all of them first: a known mistake is recognized by its answers
-    for (scene, usable, overlap), n in zip(scenes, map(float, found), strict=True):
+    # call all of them first: a known mistake is recognized by its answers
+    counts = [float(subject.count(*inputs)) for inputs in scenes]
+    for (scene, usable, overlap), n in zip(scenes, counts, strict=True):
         reach = usable + (n - 1) * (usable - overlap)
         message = f"{n:g} photos cover {reach:.1f} stops, but the scene has {scene:.1f}: take more"
         require(reach >= scene - 1e-6, message)

@@ -16,7 +16,7 @@ def draw_inputs(rng):
     return x**gammas + bumps, int(rng.integers(2, 4))
 
 
-def answer(subject, curves, count):
+def get_answer(subject, curves, count):
     """Return mean (n,), H (K, n) and sd (K,) of the student's space."""
     mean, H, sd = parts(subject.fit_space(curves, count), 3, what="mean, H and sd")
     n = curves.shape[1]
@@ -37,7 +37,9 @@ def test_the_mean_is_that_of_all_curves(subject, rng):
     mean[i] is the mean of curves[:, i].
     """
     curves, count = draw_inputs(rng)
-    same(answer(subject, curves, count)[0], curves.mean(axis=0), 1e-5, what="mean", kind="curve")
+    same(
+        get_answer(subject, curves, count)[0], curves.mean(axis=0), 1e-5, what="mean", kind="curve"
+    )
 
 
 @points(5)
@@ -50,8 +52,8 @@ def test_the_components_span_the_directions_of_largest_spread(subject, rng):
     """
     curves, count = draw_inputs(rng)
     H = space.fit_space(curves, count).H
-    came = answer(subject, curves, count)[1]
-    same(came.T @ came, H.T @ H, 1e-4, what="H^T H", picture=True)
+    answer = get_answer(subject, curves, count)[1]
+    same(answer.T @ answer, H.T @ H, 1e-4, what="H^T H", picture=True)
 
 
 @points(5)
@@ -64,8 +66,8 @@ def test_each_component_has_its_place_and_length_1(subject, rng):
     """
     curves, count = draw_inputs(rng)
     H = space.fit_space(curves, count).H
-    came = answer(subject, curves, count)[1]
-    same(np.abs(came @ H.T), np.eye(count), 1e-3, what="the size of H times the right H^T")
+    answer = get_answer(subject, curves, count)[1]
+    same(np.abs(answer @ H.T), np.eye(count), 1e-3, what="the size of H times the right H^T")
 
 
 @points(4)
@@ -78,4 +80,4 @@ def test_the_spread_is_the_standard_deviation_of_the_coefficients(subject, rng):
     """
     curves, count = draw_inputs(rng)
     sd = space.fit_space(curves, count).sd
-    same(answer(subject, curves, count)[2] / sd, np.ones(count), 1e-3, what="sd / the right sd")
+    same(get_answer(subject, curves, count)[2] / sd, np.ones(count), 1e-3, what="sd / the right sd")

@@ -10,7 +10,7 @@ def agree(subject, rng, stops, low, high, *, black=0.0, **options):
     """
     sdr = rng.uniform(0.1, 0.9, (12, 16, 3))
     hdr = sdr * 2 ** rng.uniform(*stops, sdr.shape)
-    sdr, hdr = (one * (rng.random(one.shape) >= black) for one in (sdr, hdr))
+    sdr, hdr = (image * (rng.random(image.shape) >= black) for image in (sdr, hdr))
     answer, expected = (
         f(sdr, hdr, low, high, **options) for f in (subject.gain_map, gainmap.gain_map)
     )

@@ -70,9 +70,8 @@ def test_the_curve_of_a_camera_is_recovered(subject, rng):
     Plot g: it must rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
-    Z, B = samples(
-        rng, N=200, response=response, noise=0, light=(-2.4, 0.3)
-    )  # some of them clipped
+    # some of them clipped
+    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, 0.3))
     g, _ = get_answer(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
@@ -116,7 +115,7 @@ def test_more_smoothness_gives_a_straighter_curve_and_a_worse_fit(subject, rng):
 
 
 def _few(numbers):
-    return ", ".join(f"{one:.3g}" for one in numbers)
+    return ", ".join(f"{number:.3g}" for number in numbers)
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")
@@ -144,11 +143,10 @@ def test_another_unit_of_time_changes_lE_but_not_g(subject, rng):
     The right-hand side is w B[j]. Use B as it is, not its logarithm or its exponential.
     """
     Z, B = samples(rng, N=40)
-    (g, lE), (moved, less) = (
-        get_answer(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0))
-    )
-    same(moved, g, 0.02, what="g with times in milliseconds")
-    same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
+    g, lE = get_answer(subject, Z, B, 30.0, HAT)
+    g_ms, lE_ms = get_answer(subject, Z, B + np.log(1000.0), 30.0, HAT)
+    same(g_ms, g, 0.02, what="g with times in milliseconds")
+    same(lE_ms, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")

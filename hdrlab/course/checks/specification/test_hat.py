@@ -50,9 +50,8 @@ def test_the_weight_is_largest_in_the_middle_and_falls_to_both_ends(subject, rng
     """
     n = LEVEL_COUNT
     w = get_answer(subject, n)
-    steps = np.diff(w) * np.where(
-        np.arange(n - 1) < n // 2, 1, -1
-    )  # the one in the middle may be 0
+    # the one in the middle may be 0
+    steps = np.diff(w) * np.where(np.arange(n - 1) < n // 2, 1, -1)
     wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
     message = f"w: expected weights that rise to the middle and fall after it; yours do not at level {wrong}"
     require(wrong == n, message, expected=hat(n), came=w, kind="curve")

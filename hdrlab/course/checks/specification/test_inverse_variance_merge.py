@@ -31,9 +31,9 @@ def counted(rng, times=TIMES, dimmest=2.0):
     ), E
 
 
-def get_answer(subject, given):
+def get_answer(subject, inputs):
     """Return the student's E and s."""
-    E, s = parts(subject.inverse_variance_merge(*given), 2)
+    E, s = parts(subject.inverse_variance_merge(*inputs), 2)
     return finite(E, SHAPE, what="E").astype(float), finite(s, SHAPE, what="s").astype(float)
 
 
@@ -54,12 +54,12 @@ def test_a_single_photo_keeps_its_own_noise(subject, rng):
 
     s is a standard deviation: the square root of V = variance(X, D, N, R) / t^2.
     """
-    given, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
-    X, D, _, t, N, R = given
-    E, s = get_answer(subject, given)
+    inputs, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
+    X, D, _, t, N, R = inputs
+    E, s = get_answer(subject, inputs)
     alike(E, X[0] / t, 1e-3, "E / (X / t)", X[0] / t)
-    true = np.sqrt(variance(X[0], D[0], N, R)) / t
-    alike(s, true, 0.02, "s / the standard deviation of one photo", true)
+    truth = np.sqrt(variance(X[0], D[0], N, R)) / t
+    alike(s, truth, 0.02, "s / the standard deviation of one photo", truth)
 
 
 @points(2)
@@ -73,13 +73,13 @@ def test_equal_exposure_times_give_the_plain_mean(subject, rng):
     Compute V from E t, once you know E, and not from the count of each photo. Then all weights are
     equal.
     """
-    given, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
-    X, D, _, _, N, R = given
-    E, s = get_answer(subject, given)
+    inputs, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
+    X, D, _, _, N, R = inputs
+    E, s = get_answer(subject, inputs)
     plain = X.mean(axis=0) / 2
     alike(E, plain, 0.005, "E / the plain mean", plain)
-    true = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
-    alike(s, true, 0.02, "s / half the standard deviation of one photo", true)
+    truth = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
+    alike(s, truth, 0.02, "s / half the standard deviation of one photo", truth)
 
 
 @points(2)
@@ -107,11 +107,11 @@ def test_each_measurement_is_weighted_by_its_inverse_variance(subject, rng):
 
     E = sum(x / V) / sum(1 / V), and s^2 = 1 / sum(1 / V).
     """
-    given, _ = counted(rng)
-    E, s = get_answer(subject, given)
-    true = inverse_variance_merge(*given)
-    alike(E, true[0], 0.05, "E, in standard deviations", true[1])
-    alike(s, true[1], 0.05, "s / the correct s", true[1])
+    inputs, _ = counted(rng)
+    E, s = get_answer(subject, inputs)
+    truth = inverse_variance_merge(*inputs)
+    alike(E, truth[0], 0.05, "E, in standard deviations", truth[1])
+    alike(s, truth[1], 0.05, "s / the correct s", truth[1])
 
 
 @points(7)
@@ -122,12 +122,17 @@ def test_no_other_mean_has_a_smaller_error(subject, rng):
 
     Any weights other than 1 / V make the error of E larger.
     """
-    given, scene = counted(rng)
-    best, s = inverse_variance_merge(*given)
-    least, answer = (
-        np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, get_answer(subject, given)[0])
+    inputs, scene = counted(rng)
+    best, s = inverse_variance_merge(*inputs)
+    smallest_error, answer = (
+        np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, get_answer(subject, inputs)[0])
     )
-    same(max(answer / least, 1.0), 1.0, 0.02, what="root mean square error / the smallest possible")
+    same(
+        max(answer / smallest_error, 1.0),
+        1.0,
+        0.02,
+        what="root mean square error / the smallest possible",
+    )
 
 
 @points(2)
@@ -139,8 +144,8 @@ def test_95_percent_of_the_pixels_lie_within_1_96_standard_deviations(subject, r
 
     Several photos together are more certain than one: s^2 = 1 / sum(1 / V).
     """
-    given, scene = counted(rng)
-    E, s = get_answer(subject, given)
+    inputs, scene = counted(rng)
+    E, s = get_answer(subject, inputs)
     same(
         100 * np.mean(np.abs(E - scene) < 1.96 * s),
         95.0,

@@ -31,7 +31,7 @@ def inner(shape):
     return mask
 
 
-def answer(subject, B, D, full):
+def get_answer(subject, B, D, full):
     return parts(subject.join_sensors(B, D, full), 2, what="E and the cases")
 
 
@@ -40,8 +40,8 @@ def same_case(subject, rng, number):
     E, case = splitter.join_sensors(B, D, full)
     where = inner(SHAPE) & (case == number)
     require(where.any(), "the drawn photo lacks this case")
-    came = answer(subject, B, D, full)[0]
-    same(came, E, TOLERANCE, what=f"E in case {number}", where=where, picture=True)
+    answer = get_answer(subject, B, D, full)[0]
+    same(answer, E, TOLERANCE, what=f"E in case {number}", where=where, picture=True)
 
 
 @points(2, needs="test_a_full_pixel_is_predicted_from_its_neighbors")
@@ -98,8 +98,8 @@ def test_each_pixel_has_its_case(subject, rng):
     """
     B, D, full = draw_inputs(rng)
     case = splitter.join_sensors(B, D, full)[1]
-    came = answer(subject, B, D, full)[1]
-    same(came, case, 0, what="the cases", where=inner(SHAPE), picture=True)
+    answer = get_answer(subject, B, D, full)[1]
+    same(answer, case, 0, what="the cases", where=inner(SHAPE), picture=True)
 
 
 @points(2, needs="test_near_full_pixels_the_sensors_are_mixed")
@@ -114,5 +114,5 @@ def test_at_the_border_the_last_pixels_go_on(subject, rng):
     full[:4, :7] = True
     full[-1, 10:20] = True
     E = splitter.join_sensors(B, D, full)[0]
-    came = answer(subject, B, D, full)[0]
-    same(came, E, TOLERANCE, what="E at the border", where=~inner(SHAPE), picture=True)
+    answer = get_answer(subject, B, D, full)[0]
+    same(answer, E, TOLERANCE, what="E at the border", where=~inner(SHAPE), picture=True)

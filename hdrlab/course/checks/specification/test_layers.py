@@ -50,9 +50,9 @@ def test_the_base_is_the_bilateral_filter(subject, rng):
     Divide by the sum of the weights. The exponents are -d^2 / (2 sigma^2).
     """
     lL = draw_inputs(rng)
-    found = bilateral(lL, **SIGMA)
+    expected = bilateral(lL, **SIGMA)
     base, _ = get_answer(subject, lL)
-    same(base, found.mean, 0.02, what="the base", picture=True, where=found.k > 20)
+    same(base, expected.mean, 0.02, what="the base", picture=True, where=expected.k > 20)
 
 
 @points(3, needs="test_the_base_is_the_bilateral_filter")
@@ -79,9 +79,9 @@ def test_more_light_changes_the_base_but_not_the_detail(subject, rng):
     """
     lL = draw_inputs(rng)
     base, detail = get_answer(subject, lL)
-    moved, same_detail = get_answer(subject, lL + np.float32(1.3))
+    shifted_base, same_detail = get_answer(subject, lL + np.float32(1.3))
     same(
-        moved - base,
+        shifted_base - base,
         np.full(lL.shape, 1.3),
         0.02,
         what="the change of the base with 20 times the light",

@@ -16,13 +16,13 @@ def draw_inputs(rng):
     return (G * ratios).astype(np.float32), G.astype(np.float32)
 
 
-def answer(subject, F, G):
+def get_answer(subject, F, G):
     return parts(subject.lowest_ratio(F, G), 2, what="share and agreement")
 
 
 def same_share(subject, F, G):
     share, _ = flare.lowest_ratio(F, G)
-    same(answer(subject, F, G)[0], share, 2e-3 * share, what="the share")
+    same(get_answer(subject, F, G)[0], share, 2e-3 * share, what="the share")
 
 
 # the ratio needs 5000 pixels
@@ -50,8 +50,8 @@ def test_the_agreement_is_the_quotient_of_a_high_and_the_lowest_ratio(subject, r
     """
     F, G = draw_inputs(rng)
     _, agreement = flare.lowest_ratio(F, G)
-    came = answer(subject, F, G)[1]
-    same(came, agreement, 2e-3 * agreement, what="the agreement")
+    answer = get_answer(subject, F, G)[1]
+    same(answer, agreement, 2e-3 * agreement, what="the agreement")
 
 
 @points(3)
@@ -76,15 +76,15 @@ def test_the_share_is_not_negative_and_needs_5000_pixels(subject, rng):
     If the ratios rise steeply, 2 q1 - q2 is negative. Return 0 then.
     """
     F, G = draw_inputs(rng)
-    share, agreement = answer(subject, F[:20], G[:20])
+    share, agreement = get_answer(subject, F[:20], G[:20])
     same(share, 0, 0, what="the share in a small map")
     require(np.isposinf(numbers(agreement, what="the agreement")).all(), "the agreement is not inf")
     for count, what in ((4990, "fewer than 5000"), (5010, "more than 5000")):
         few = G.copy()
         few.flat[count:] = 0
         expected, _ = flare.lowest_ratio(F, few)
-        came = answer(subject, F, few)[0]
-        same(came, expected, 2e-3 * expected, what=f"the share for {what} pixels with G above 0")
+        answer = get_answer(subject, F, few)[0]
+        same(answer, expected, 2e-3 * expected, what=f"the share for {what} pixels with G above 0")
     steep = F * np.where(rng.random(SHAPE) < 3e-4, 0.01, 1).astype(np.float32)
     steep.flat[:4] = 1e-4 * G.flat[:4]
-    same(answer(subject, steep, G)[0], 0, 0, what="the share where the ratios rise steeply")
+    same(get_answer(subject, steep, G)[0], 0, 0, what="the share where the ratios rise steeply")

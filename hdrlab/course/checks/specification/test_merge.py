@@ -95,9 +95,9 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
     """
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
-    taken = camera.shoot(E, times, camera.Camera(response="gamma"))
+    photos = camera.shoot(E, times, camera.Camera(response="gamma"))
     answer = np.log(
-        finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float)
+        finite(subject.merge(photos.images, photos.times, G), E.shape, what="E").astype(float)
     )
     ratio = answer - np.log(E)
     same(
@@ -108,7 +108,7 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
         picture=True,
     )
     step = np.log(
-        finite(subject.merge(taken.images, 8 * taken.times, G), E.shape, what="E").astype(float)
+        finite(subject.merge(photos.images, 8 * photos.times, G), E.shape, what="E").astype(float)
     )
     same(
         step,
@@ -129,11 +129,11 @@ def test_the_given_weights_are_used(subject, rng):
     """
     images = photographs(rng, smooth(rng))
     for w in (weights.gaussian(), 0.05 + np.linspace(0, 1, 256) ** 2):
-        each = [
+        photo_maps = [
             map_of(subject.merge(images[[j]], TIMES[[j]], G, w), images[[j]])
             for j in range(len(images))
         ]
-        mean = np.average(np.log(each), axis=0, weights=w[images])
+        mean = np.average(np.log(photo_maps), axis=0, weights=w[images])
         same_map(subject.merge(images, TIMES, G, w), np.exp(mean))
 
 
@@ -161,8 +161,10 @@ def test_each_channel_uses_its_own_curve(subject, rng):
     """
     images = np.stack([photographs(rng, smooth(rng)) for _ in range(3)], axis=-1)
     g = np.stack([G, responses.true_g("linear"), responses.true_g("film")], axis=-1)
-    each = [map_of(subject.merge(images[..., c], TIMES, g[:, c]), images[..., c]) for c in range(3)]
-    same_map(subject.merge(images, TIMES, g), np.stack(each, axis=-1))
+    channel_maps = [
+        map_of(subject.merge(images[..., c], TIMES, g[:, c]), images[..., c]) for c in range(3)
+    ]
+    same_map(subject.merge(images, TIMES, g), np.stack(channel_maps, axis=-1))
 
 
 @points(3)

@@ -20,9 +20,8 @@ def draw_inputs(rng, off=10, scatter=0.1):
 def get_answer(subject, found, **options):
     """Return the student's states as (k, used, V), and the library's."""
     answer = states(subject.ratio_steps(found, **options), what="the states")
-    return [parts(one, 3, what="a state") for one in answer], list(
-        ratios.ratio_steps(found, **options)
-    )
+    student_states = [parts(state, 3, what="a state") for state in answer]
+    return student_states, list(ratios.ratio_steps(found, **options))
 
 
 # right iterations may differ in their steps, which small inputs show most

@@ -29,21 +29,20 @@ def same_curve(f, truth, tolerance):
     """Compare at levels 12 to 244, smoothed, because a level that only a few pixels have is
     inexact.
     """
-    f, truth = (gaussian_filter1d(one, 3)[SHOWN] for one in (f, truth))
+    f, truth = (gaussian_filter1d(curve, 3)[SHOWN] for curve in (f, truth))
     same(f, truth, tolerance * truth[-1], what="f^-1 at levels 12 to 244", kind="curve")
 
 
 def get_answer(subject, Z, t, **options):
     """Return f^-1 of every state divided by f^-1(128), because its scale is free."""
     answer = states(subject.recover_steps(Z, t, W, **options), what="the states")
-    found = []
+    curves = []
     for state in answer:
-        f = finite(
-            state[0] if isinstance(state, tuple | list) else state, (256,), what="f^-1"
-        ).astype(float)
+        curve = state[0] if isinstance(state, tuple | list) else state
+        f = finite(curve, (256,), what="f^-1").astype(float)
         require(f[128] > 0, f"f^-1: expected values above 0, got {f[128]:.3g} at level 128")
-        found.append(f / f[128])
-    return found
+        curves.append(f / f[128])
+    return curves
 
 
 # right iterations may differ in their steps, which small inputs show most
@@ -58,10 +57,11 @@ def test_the_iterations_converge_to_the_curve_of_the_camera(subject, rng):
 
     Iterate until f^-1 hardly changes. About thirty iterations are enough.
     """
+    # the line is far from it
     for response in (
         laws.drawn_response(rng),
         responses.RESPONSES["gamma"],
-    ):  # the line is far from it
+    ):
         Z, t = samples(rng, response, N=2000)
         f = get_answer(subject, Z, t, max_iterations=25)[-1]
         truth = np.exp(responses.true_g(response))
@@ -81,13 +81,13 @@ def test_an_iteration_is_a_weighted_mean_followed_by_a_plain_one(subject, rng):
     Z = rng.integers(15, 250, (900, 4)).astype(np.intp)
     t = rng.uniform(0.2, 1, 4)
     line = np.arange(256) / 128
-    shown = slice(15, 249)
+    levels = slice(15, 249)
     truth = robertson.update(Z, t, robertson.irradiance(Z, t, line, W))
-    found = get_answer(subject, Z, t, max_iterations=3, tolerance=0.0)
-    message = f"expected a state before the first iteration and one after each, got {len(found)}"
-    require(len(found) >= 2, message)
-    expected = truth[shown] / truth[128]
-    same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
+    curves = get_answer(subject, Z, t, max_iterations=3, tolerance=0.0)
+    message = f"expected a state before the first iteration and one after each, got {len(curves)}"
+    require(len(curves) >= 2, message)
+    expected = truth[levels] / truth[128]
+    same(curves[1][levels], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
 
 @points(3, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
@@ -101,8 +101,8 @@ def test_a_correct_curve_does_not_change(subject, rng):
     x = np.union1d(rng.permutation(np.arange(5, 62))[:45], 32)  # 4 x 32 = 128, where f^-1 is 1
     Z = np.stack([x, 2 * x, 4 * x], axis=1)
     t = np.array([1.0, 2.0, 4.0])
-    shown = np.unique(Z)
-    truth = np.where(np.isin(np.arange(256), shown) & (W > 0), np.arange(256) / 128, np.nan)
+    levels = np.unique(Z)
+    truth = np.where(np.isin(np.arange(256), levels) & (W > 0), np.arange(256) / 128, np.nan)
     for f in get_answer(subject, Z, t, max_iterations=5):
         same(f, truth, 2e-3, what="f^-1 of a linear camera", kind="curve", where=~np.isnan(truth))
 
@@ -116,8 +116,9 @@ def test_levels_without_pixels_are_filled_by_interpolation(subject, rng):
     Interpolate the empty pixel values: use np.interp over the pixel values that have pixels.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    whole, even = (get_answer(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
-    same_curve(even, whole, 0.05)
+    all_levels = get_answer(subject, Z, t, max_iterations=12)[-1]
+    even_levels = get_answer(subject, Z // 2 * 2, t, max_iterations=12)[-1]
+    same_curve(even_levels, all_levels, 0.05)
 
 
 @points(2)
@@ -130,10 +131,12 @@ def test_each_iteration_yields_a_state_and_changes_the_curve_less(subject, rng):
     The changes must become smaller from one iteration to the next.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    found = get_answer(subject, Z, t, max_iterations=8, tolerance=0.0)
-    moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
-    message = f"expected 9 states with smaller and smaller changes, got {len(found)} with changes of {moved}"
-    require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], message)
+    curves = get_answer(subject, Z, t, max_iterations=8, tolerance=0.0)
+    changes = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(curves, curves[1:], strict=False)]
+    message = (
+        f"expected 9 states with ever smaller changes, got {len(curves)} with changes of {changes}"
+    )
+    require(len(curves) >= 8 and 0 < changes[-1] < 0.5 * changes[0], message)
 
 
 @points(2, needs="test_the_iterations_converge_to_the_curve_of_the_camera")
@@ -145,10 +148,9 @@ def test_the_unit_of_time_does_not_matter(subject, rng):
     Divide f^-1 by its value at 128 at the end of every iteration.
     """
     Z, t = samples(rng, laws.drawn_response(rng))
-    one, other = (
-        get_answer(subject, Z, factor * t, max_iterations=6)[-1] for factor in (1.0, 1000.0)
-    )
-    same_curve(other, one, 0.005)
+    in_seconds = get_answer(subject, Z, t, max_iterations=6)[-1]
+    in_milliseconds = get_answer(subject, Z, 1000.0 * t, max_iterations=6)[-1]
+    same_curve(in_milliseconds, in_seconds, 0.005)
 
 
 @points(1, needs="test_each_iteration_yields_a_state_and_changes_the_curve_less")
@@ -161,7 +163,10 @@ def test_tolerance_and_max_iterations_end_it(subject, rng):
     Do not write numbers of your own in their place.
     """
     Z, t = samples(rng, laws.drawn_response(rng), N=300)
-    for options, most in (({"tolerance": 1e9}, 1), ({"tolerance": 0.0, "max_iterations": 3}, 3)):
+    for options, last_iteration in (
+        ({"tolerance": 1e9}, 1),
+        ({"tolerance": 0.0, "max_iterations": 3}, 3),
+    ):
         count = len(get_answer(subject, Z, t, **options))
-        message = f"expected at most {most + 1} states with {options}, got {count}"
-        require(count <= most + 1, message)
+        message = f"expected at most {last_iteration + 1} states with {options}, got {count}"
+        require(count <= last_iteration + 1, message)

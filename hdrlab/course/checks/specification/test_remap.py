@@ -63,9 +63,8 @@ def test_edges_are_scaled_by_beta(subject, rng):
     r = g +- (sigma + beta (d - sigma)). alpha has no effect here.
     """
     lL, g, sigma = draw_inputs(rng)
-    edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(
-        np.float32
-    )  # shifted so that all differences are above sigma
+    # shifted so that all differences are above sigma
+    edges = (lL + np.sign(lL - g) * 1.01 * sigma).astype(np.float32)
     for beta in (0.0, 0.4):
         beyond = np.abs(edges - g) - sigma
         expected = g + np.sign(edges - g) * (sigma + beta * beyond)

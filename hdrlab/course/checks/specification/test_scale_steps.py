@@ -22,13 +22,13 @@ def draw_inputs(rng, shape=(48, 64)):
 def get_answer(subject, blurred, **options):
     """Return the states, each with its five parts."""
     return [
-        parts(one, 5, what="a state") for one in states(subject.scale_steps(blurred, **options))
+        parts(state, 5, what="a state") for state in states(subject.scale_steps(blurred, **options))
     ]
 
 
 def doubtful(truth, threshold=0.05):
     """Return where a response is so close to the threshold that rounding decides."""
-    return np.any([np.abs(np.abs(one.response) - threshold) < CLOSE for one in truth], axis=0)
+    return np.any([np.abs(np.abs(state.response) - threshold) < CLOSE for state in truth], axis=0)
 
 
 def same_adaptation(answer, truth, what, sure):
@@ -61,8 +61,10 @@ def test_each_response_compares_a_width_with_the_next(subject, rng):
     truth = list(reinhard.scale_steps(blurred))
     answer = get_answer(subject, blurred)
     same(len(answer), 8, 0, what="the number of states")
-    for one, true in zip(answer, truth, strict=True):
-        same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
+    for state, expected in zip(answer, truth, strict=True):
+        same(
+            state[2], expected.response, 1e-3, what=f"V at width {expected.width:.3g}", picture=True
+        )
 
 
 @points(4)
@@ -80,8 +82,15 @@ def test_a_pixel_takes_the_largest_even_width(subject, rng):
     answer = get_answer(subject, blurred)
     sure = ~doubtful(truth)
     same_adaptation(answer, truth, "the adaptation", sure)
-    for one, true in zip(answer, truth, strict=True):
-        same(one[3], true.even, 0, what=f"even at width {true.width:.3g}", picture=True, where=sure)
+    for state, expected in zip(answer, truth, strict=True):
+        same(
+            state[3],
+            expected.even,
+            0,
+            what=f"even at width {expected.width:.3g}",
+            picture=True,
+            where=sure,
+        )
 
 
 def test_a_uniform_image_takes_the_largest_neighborhood(subject, rng):

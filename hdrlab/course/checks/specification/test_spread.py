@@ -20,7 +20,7 @@ def draw_inputs(rng, local=True):
     return L.astype(np.float32), Ld.astype(np.float32), int(rng.choice(BINS))
 
 
-def answer(subject, L, Ld, bins):
+def get_answer(subject, L, Ld, bins):
     what = "luminance, minimum and maximum"
     return parts(subject.spread(L, Ld, bins=bins), 3, what=what)
 
@@ -35,7 +35,7 @@ def test_an_operator_draws_a_band(subject, rng):
     """
     L, Ld, bins = draw_inputs(rng)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
-    _, came_lowest, came_highest = answer(subject, L, Ld, bins)
+    _, came_lowest, came_highest = get_answer(subject, L, Ld, bins)
     same(came_lowest, lowest, 1e-5, what="the minimum of Ld", kind="curve")
     same(came_highest, highest, 1e-5, what="the maximum of Ld", kind="curve")
 
@@ -50,7 +50,7 @@ def test_a_curve_draws_itself(subject, rng):
     """
     L, Ld, bins = draw_inputs(rng, local=False)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
-    _, came_lowest, came_highest = answer(subject, L, Ld, bins)
+    _, came_lowest, came_highest = get_answer(subject, L, Ld, bins)
     same(came_lowest, lowest, 1e-5, what="the minimum of Ld of a curve", kind="curve")
     same(came_highest, highest, 1e-5, what="the maximum of Ld of a curve", kind="curve")
 
@@ -65,12 +65,12 @@ def test_the_luminance_is_one_of_the_class(subject, rng):
     """
     L, Ld, bins = draw_inputs(rng)
     classes = np.sort(L, axis=None).reshape(bins, -1).astype(float)
-    came = finite(answer(subject, L, Ld, bins)[0], (bins,), what="luminance").astype(float)
-    inside = (came >= classes[:, 0] * 0.9999) & (came <= classes[:, -1] * 1.0001)
+    answer = finite(get_answer(subject, L, Ld, bins)[0], (bins,), what="luminance").astype(float)
+    inside = (answer >= classes[:, 0] * 0.9999) & (answer <= classes[:, -1] * 1.0001)
     require(
         inside.all(),
         f"luminance: {np.count_nonzero(~inside)} of {bins} are not in their class",
         expected=np.median(classes, axis=1),
-        came=came,
+        came=answer,
         kind="curve",
     )

@@ -63,7 +63,9 @@ def test_several_fractions_give_one_value_each(subject, rng):
     """
     Y = draw_inputs(rng)
     q = np.array([0.17, 0.5, 0.83])
-    expected = [numbers(subject.threshold(histogram(Y), float(one)), what="t").item() for one in q]
+    expected = [
+        numbers(subject.threshold(histogram(Y), float(fraction)), what="t").item() for fraction in q
+    ]
     same(subject.threshold(histogram(Y), q), expected, 0, what="the thresholds for three fractions")
 
 

@@ -53,11 +53,12 @@ def test_decoding_restores_the_radiance_to_one_part_in_128(subject, rng):
     m = floor(256 E / 2^(e - 128)). Do not forget the 256 or the 128.
     """
     E = draw_inputs(rng)
+    # a mantissa of 255.9 must not be rounded up to 256
     E[0, :3] = [
         [1.999, 0.5, 0.25],
         [0.03, 0.9985, 0.4],
         [0.1, 0.2, 3.997],
-    ]  # a mantissa of 255.9 must not be rounded up to 256
+    ]
     m, e = np.split(get_answer(subject, E), [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
     same(
@@ -94,15 +95,15 @@ def test_twice_the_light_adds_one_to_the_exponent_and_black_is_zero(subject, rng
     E[2, 3] = 0
     truth = rgbe.to_pixels(E).astype(float)
     lit = E.max(axis=-1, keepdims=True) > 0
-    one = get_answer(subject, E)
-    two = get_answer(subject, 2 * E)
+    encoded = get_answer(subject, E)
+    doubled = get_answer(subject, 2 * E)
     same(
-        two - one,
+        doubled - encoded,
         lit * np.array([0, 0, 0, 1]),
         0,
         what="the change of the bytes at twice the light",
     )
-    same(one[..., 3], truth[..., 3], 0, what="the exponents")
+    same(encoded[..., 3], truth[..., 3], 0, what="the exponents")
 
 
 @points(2, needs="test_decoding_restores_the_radiance_to_one_part_in_128")

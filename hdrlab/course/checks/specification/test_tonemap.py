@@ -58,13 +58,12 @@ def test_the_default_white_is_the_brightest_luminance_without_outliers(subject, 
     white = max(1, np.quantile(Lm, 0.9999)). Compute it after scaling to the key.
     """
     L = draw_inputs(rng)
-    L[:6, :9] = (
-        float(rng.uniform(1.5, 3)) * L.max()
-    )  # so many that every rule of quantiles finds them
-    for one in (L, L**0.1):  # all of the second one is below 1
-        Lm = reinhard.scale_to_key(one.astype(float))
+    # so many that every rule of quantiles finds them
+    L[:6, :9] = float(rng.uniform(1.5, 3)) * L.max()
+    for luminance in (L, L**0.1):  # all of the second one is below 1
+        Lm = reinhard.scale_to_key(luminance.astype(float))
         expected = reinhard.display(Lm, Lm, max(1.0, Lm.max()))
-        same(subject.tonemap(one), expected, 0.01, what="Ld without a white", picture=True)
+        same(subject.tonemap(luminance), expected, 0.01, what="Ld without a white", picture=True)
 
 
 @points(6, needs=OPERATOR)
@@ -132,8 +131,10 @@ def test_one_hot_pixel_does_not_darken_the_image(subject, rng):
     """
     tonemap = get_answer(subject)
     L = laws.scene((200, 256))
-    for one in (L, L**0.2):
-        medians = [float(np.median(tonemap(picture))) for picture in (one, laws.hot_pixel(one))]
+    for luminance in (L, L**0.2):
+        medians = [
+            float(np.median(tonemap(picture))) for picture in (luminance, laws.hot_pixel(luminance))
+        ]
         same(medians[1], medians[0], 0.02, what="the median of Ld with a hot pixel")
 
 

@@ -49,8 +49,14 @@ def test_the_mean_has_no_weights(subject):
     expected = np.full(256, np.nan)
     expected[7] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4
     expected[200] = (3 * 2 + 5 * 1) / 2
-    known = ~np.isnan(expected)
-    same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=known)
+    has_value = ~np.isnan(expected)
+    same(
+        subject.update(Z, t, E),
+        expected,
+        1e-4,
+        what="f^-1 at the levels 7 and 200",
+        where=has_value,
+    )
 
 
 @points(2)
