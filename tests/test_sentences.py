@@ -14,8 +14,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from ipywidgets.widgets import widget
-from scipy.ndimage import binary_dilation
-from scipy.stats import spearmanr
+from scipy.ndimage import binary_dilation, uniform_filter
+from scipy.stats import chi2, spearmanr
 from test_notebooks import NOTEBOOKS
 
 from hdrlab.align import mtb
@@ -126,6 +126,44 @@ def matrix_exposure(n, tolerance):
         B = n.autoexposure.measure_brightness(n.scene.E, EV)
         EV -= n.metering.correction(B, n.metering.matrix(B, tolerance=tolerance))
     return EV
+
+
+def drifted(n, camera_number, count):
+    """Return the mean error in percent of a camera of page 06 after many iterations."""
+    iterations = n.mitsunaga.fit_steps(
+        n.means[camera_number], [0.5, 0.5, 0.5], 5, eps=0, max_iterations=count
+    )
+    return n.ambiguity.mean_error(n.last(iterations).c[0], n.trials[camera_number].c)
+
+
+def errors_with_and_without_u(n):
+    """Return the median error in percent of the cameras of page 06, and that without the error in u."""
+    errors = []
+    for samples, trial in zip(n.means, n.trials, strict=True):
+        fit = n.last(n.mitsunaga.fit_steps(samples, [0.5, 0.5, 0.5], 5))
+        u = np.log(fit.R).mean() / np.log(trial.R).mean()
+        truth = n.mitsunaga.value(n.z, trial.c)
+        found = n.mitsunaga.value(n.z, fit.c[0])
+        errors.append([np.abs(found - truth).mean(), np.abs(found - truth**u).mean()])
+    return 100 * np.median(errors, axis=0)
+
+
+def measured_well(n):
+    """Return which pixels of the frames of page 06 are neither black nor white."""
+    mean = n.still.mean(axis=0)
+    return (mean > 0.05) & (mean < 0.98)
+
+
+def noise_of_frames(n):
+    """Return the standard deviation of a frame of page 06, where it is neither black nor white."""
+    return n.still.std(axis=0, ddof=1)[measured_well(n)].mean()
+
+
+def even_patches(frame, sigma):
+    """Return where 5 x 5 pixels of a frame differ no more than noise of sigma, by chi-square."""
+    mean = uniform_filter(frame, 5)
+    squared = 25 * np.maximum(uniform_filter(frame**2, 5) - mean**2, 0)
+    return squared <= chi2.isf(0.05, 24) * uniform_filter(sigma**2, 5)
 
 
 def gray_error(n, falloff):
@@ -468,6 +506,20 @@ SENTENCES = {
         ),
         "the error falls more than a thousandfold into a sharp notch at 0.7": lambda n: (
             np.median(n.errors()) > 1000 * n.errors()[np.isclose(n.along, 0.7)]
+        ),
+        "after 3000 iterations its error is 19 %": lambda n: round(drifted(n, 31, 3000)) == 19,
+        "the median of the stopped curves would fall from 0.94 to 0.05 %": lambda n: (
+            np.round(errors_with_and_without_u(n), 2).tolist() == [0.94, 0.05]
+        ),
+        "is one and a half times this camera's noise": lambda n: (
+            round(0.01 / float(noise_of_frames(n)), 1) == 1.5
+        ),
+        "With the true $\\sigma$, 5 % would pass instead of 18 %": lambda n: (
+            round(100 * even_patches(n.still[0], n.still.std(axis=0, ddof=1)).mean()) == 5
+            and round(100 * n.averaged(1).mean()) == 18
+        ),
+        "of the patches that pass with 16 frames, 98 % are clipped": lambda n: (
+            round(100 * np.mean(~measured_well(n)[n.averaged(16)])) == 98
         ),
         "Noise of a tenth of a level fills the notch": lambda n: (
             np.median(n.errors(0.1 / 255)) < 3 * n.errors(0.1 / 255)[np.isclose(n.along, 0.7)]
