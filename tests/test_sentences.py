@@ -584,6 +584,16 @@ SENTENCES = {
             left > 0 > right and abs(left + right) < 0.1 * left
             for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
         ),
+        "at 15 % more speed its RMSE is a third of that of one edge, at 30 % almost half": lambda n: (
+            0.3 < both_edges_over_one(n, 0.15) < 0.37 and 0.43 < both_edges_over_one(n, 0.3) < 0.5
+        ),
+        "at 30 % more speed it is off by only 0.05 %": lambda n: (
+            round(mean_of_edges_off(n, 0.3), 2) == 0.05
+        ),
+        "With only the first three to five samples of the dim grid, it is off by up to 1 %": lambda n: (
+            round(max(spline_off(n, n.spline(samples=count)) for count in (3, 4, 5))) == 1
+            and spline_off(n, n.spline()) < 0.5
+        ),
         "although that curve was right to a tenth of a percent": lambda n: (
             np.abs(spline_error(n, n.by_motion)).max() < 0.1
         ),
@@ -1457,6 +1467,24 @@ def edges_off(n, acceleration):
     found = n.motion_blur.compare_edges(n.waved(acceleration))
     errors = [spline_error(n, one) for one in (found.left, found.right)]
     return [each[np.argmax(np.abs(each))] for each in errors]
+
+
+def both_edges_over_one(n, acceleration):
+    """Return the RMSE of the curve of both edges of page 08 over that of one edge."""
+    image = n.waved(acceleration)
+    edges = n.motion_blur.compare_edges(image)
+    curves = [n.motion_blur.join(image, n.motion_blur.find_ramps(image)), edges.left, edges.right]
+    both, left, right = (np.sqrt(np.mean(spline_error(n, curve) ** 2)) for curve in curves)
+    return 2 * both / (left + right)
+
+
+def mean_of_edges_off(n, acceleration):
+    """Return the RMSE in percent of the mean of the curves of both edges of page 08."""
+    edges = n.motion_blur.compare_edges(n.waved(acceleration))
+    curves = (edges.left, edges.right)
+    M = np.linspace(max(c.M[0] for c in curves), min(c.M[-1] for c in curves), 1000)
+    errors = [spline_error(n, c._replace(M=M, X=np.interp(M, c.M, c.X))) for c in curves]
+    return np.sqrt(np.mean(np.mean(errors, axis=0) ** 2))
 
 
 def scallops(n, stops, smoothness=0):
