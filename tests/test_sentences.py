@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from ipywidgets.widgets import widget
-from scipy.ndimage import binary_dilation, uniform_filter
+from scipy.ndimage import binary_dilation, distance_transform_edt, uniform_filter
 from scipy.stats import chi2, spearmanr
 from test_notebooks import NOTEBOOKS
 
@@ -23,6 +23,7 @@ from hdrlab.capture import camera, ranges, responses
 from hdrlab.core import metrics
 from hdrlab.fast import debevec as fast_debevec
 from hdrlab.radiance import flare
+from hdrlab.radiance.merge import Quality
 from hdrlab.response import debevec
 from hdrlab.show.widgets import Tuner, tune
 
@@ -775,8 +776,18 @@ SENTENCES = {
         "removes glare only where it is more than 2 % of the light": lambda n: (
             n.flare.remove_glare.__kwdefaults__["part"] == 0.02
         ),
-        "will the error in the region shrink: two, five, or fifteen?": lambda n: (
+        "if you leave out the pixels that stay clipped: two, five, or fifteen?": lambda n: (
             12 < errors_shrink(n) < 19
+        ),
+        "no other photo may fill these pixels, because the means over 5 × 5 pixels contain a part of him": (
+            lambda n: left_clipped_far_from_the_visitor(n) == 0
+        ),
+        "With `edge` at 0 there are nine regions": lambda n: (
+            n.regions.label(moving_pixels(n, edge=0.0)).max() == 9
+        ),
+        "At 0.8, a piece of the umbrella, the coat and the legs are left": lambda n: (
+            n.regions.label(moving_pixels(n, tau=0.8)).max() == 2
+            and moving_pixels(n, tau=0.8).mean() < 0.4 * moving_pixels(n).mean()
         ),
         "Once, where he stood in the reference photo": lambda n: len(n.result.references) == 1,
     },
@@ -1604,6 +1615,21 @@ def errors_shrink(n):
     where = n.moving.region & (clean.labels > 0) & (clean.quality == 0)
     each = [np.log2(E / np.maximum(n.truth, 1e-9))[where] for E in (merged.E, clean.E)]
     return np.sqrt(np.mean(each[0] ** 2) / np.mean(each[1] ** 2))
+
+
+def moving_pixels(n, *, tau=0.1, edge=0.35):
+    """Return the mask of what moves on page 12, for two settings of the sliders."""
+    return n.ghosts.detect_motion(n.contradiction, tau=tau, edge=edge, margin=4)[1]
+
+
+def left_clipped_far_from_the_visitor(n):
+    """Return how many pixels of the region stay clipped farther from the visitor than the means reach."""
+    taken = n.sim.images, n.sim.times, n.curve, n.w
+    result = n.ghosts.remove_ghosts(*taken, merged=n.merge_with_quality(*taken))
+    visitor = n.moving.hidden[int(result.references[0])]
+    clipped = n.everywhere & ((result.quality & Quality.CLIPPED) > 0)
+    assert clipped.sum() > 200
+    return np.sum(clipped & (distance_transform_edt(~visitor) > n.reference.BOX_SIDE))
 
 
 def blue_off(n, low, high):
