@@ -219,6 +219,23 @@ def order(n, metric="PU-PSNR", **settings):
     return list(scores(n, metric, **settings))
 
 
+def stops_until_white(n):
+    """Return how many stops above AgX's white of gray the blue lamp of page 18 becomes white."""
+    lamp = np.array([0.02, 0.1, 1.0])
+    exposures = np.arange(6.5, 16, 0.01)
+    light = 0.18 * 2.0 ** exposures[:, None] * lamp
+    is_white = np.all(n.agx.view(light) > 1 - 1e-6, axis=-1)
+    return float(exposures[np.argmax(is_white)] - 6.5)
+
+
+def effect_of_padding(n):
+    """Return by how much the naturalness of a small image depends on its incomplete blocks."""
+    small = n.scenes.chapel((40, 60))
+    picture = n.pipeline.develop(small, "reinhard")
+    L = n.colour.luminance(small)
+    return abs(n.quality.tmqi(L, picture, edge_blocks="pad").N - n.quality.tmqi(L, picture).N)
+
+
 def fraction_of_the_error(n, mask):
     """Return which fraction of the squared error of the map from five photos is in a mask (h, w)."""
     squared = (n.five.astype(np.float64) - n.truth) ** 2
@@ -949,9 +966,14 @@ SENTENCES = {
         "near black, its curve has 0.3 times the slope of a logarithm to base 2": lambda n: (
             round(n.logarithm(1)[0] / n.logarithm(0.5)[0], 1) == 0.3
         ),
-        "At 0.5 the curve is so steep that it reaches white": lambda n: (
+        "At 0.5 the curve passes white *before* the brightest luminance": lambda n: (
             n.logarithm(0.5).max() > 1 and np.mean(n.with_bias(0.5) == 1) > 0.01
         ),
+        "The blue lamp needs three stops more": lambda n: round(stops_until_white(n)) == 3,
+        "two thirds of this scene are below": lambda n: (
+            round(3 * np.mean(n.truth < n.truth.max() / 5000)) == 2
+        ),
+        "in a small image, by as much as 0.3": lambda n: round(effect_of_padding(n), 1) == 0.3,
         "the light is 38 degrees nearer to cyan": lambda n: (
             round(n.hue(n.lamp)[0, 0] - n.halfway["by channel"]) == 38
         ),
