@@ -26,8 +26,9 @@ use_plan("hw1")
 # ## 1 · Exposure value ({points})
 #
 # A camera has three controls, and many combinations give the same exposure. The exposure value (EV)
-# combines them into one number, in stops (factors of two). For the f-number $F$, the time $T$ in
-# seconds and the ISO speed $S$,
+# combines them into one number, in stops (factors of two), so that one more is half as bright a
+# photo. For the f-number $F$, the time $T$ in seconds and the ISO speed $S$ (at ISO 100, this is
+# the EV of notebook 02),
 #
 # $$\mathrm{EV} = 2\log_2 F - \log_2 T - \log_2\frac{S}{100}.$$
 #
@@ -67,9 +68,9 @@ use_plan("hw1")
 #
 # The photos show a room: five hand-held exposures, each shifted by some pixels. You cannot compare
 # their pixel values directly, since each has a different exposure. But a pixel that is brighter
-# than the median of the scene is brighter than the median in every photo, unless both are black or
-# both are white there. Ward's method compares only that: one bit per pixel, the *median threshold
-# bitmap* (MTB).
+# than the median of the scene is brighter than the median in every photo, unless the photo shows
+# both the pixel and the median as black, or both as white. Ward's method compares only that: one
+# bit per pixel, the *median threshold bitmap* (MTB).
 
 # %%
 room = scenes.room((240, 320))

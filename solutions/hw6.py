@@ -919,11 +919,11 @@ print(
 # ## 27 · The circle without vignetting ({points})
 #
 # A lens darkens the corners of an image, more so at a wide aperture. If two photos have different
-# apertures, this is no difference of exposure. [Mitsunaga and Nayar (1999, section
+# apertures, their corners differ by more than the exposure. [Mitsunaga and Nayar (1999, section
 # 6.2)](https://doi.org/10.1109/CVPR.1999.786966) use only pixels inside the circle in which the
-# photos agree. `A` and `B` (H, W) are two aligned photos, uint8. The middle of the image is at row
-# $(H - 1)/2$ and column $(W - 1)/2$, and $r$ is the distance of a pixel from it. The farthest
-# pixel has the distance $r_\text{max}$.
+# exposure is the only difference. `A` and `B` (H, W) are two aligned photos, uint8. The middle of
+# the image is at row $(H - 1)/2$ and column $(W - 1)/2$, and $r$ is the distance of a pixel from
+# it. The farthest pixel has the distance $r_\text{max}$.
 #
 # - Use only pixels with values from 5 to 249 in both photos.
 # - From the pixels with $r < r_\text{max} / 4$, learn which value of $B$ belongs to each value of
