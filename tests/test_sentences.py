@@ -68,6 +68,30 @@ def ripple_kept(n, sigma_r):
     return float(base[25, flat].std() / n.step[25, flat].std())
 
 
+def ripple_kept_by_guided(n, epsilon):
+    """Return which share of the ripple of notebook 15 the guided filter leaves far from the step."""
+    flat = slice(30, 70)
+    base = n.guided.guided(n.step, radius=8, epsilon=epsilon)
+    return float(base[25, flat].std() / n.step[25, flat].std())
+
+
+def change(n, **widths):
+    """Return by how many stops other widths of the filter change the image of page 15, on average."""
+    images = (np.maximum(n.tonemapped(**each), 1e-3) for each in (widths, {}))
+    return float(np.abs(np.subtract(*map(np.log2, images))).mean())
+
+
+def darkening_by_blur(n, near, far):
+    """Return by how many stops a blur as base darkens the wall of page 15, so far from the window."""
+    window = np.zeros(n.lL.shape, bool)
+    window[60:130, 122:248] = True
+    distance = distance_transform_edt(~window)
+    wall = (distance > near) & (distance <= far) & (n.lL < 2.2)
+    blurred = n.blur.gaussian(n.lL, n.durand.SIGMA_S_FRACTION * max(n.L.shape))
+    images = (np.maximum(n.with_base(each), 1e-3) for each in (n.base, blurred))
+    return float(np.subtract(*map(np.log2, images))[wall].mean())
+
+
 def filled_from_reference_alone(n):
     """Return which share of the moving pixels that the reference of notebook 24 lacks nothing else fills."""
     result = n.ghosts.remove_ghosts(n.three, n.times, n.g, fixed=1)
@@ -900,8 +924,19 @@ SENTENCES = {
     },
     "15": {
         "two flat areas, two decades apart": lambda n: np.isclose(np.ptp(n.step), 2.2, atol=0.02),
-        "at 0.05, half the height of the ripple, it smooths only a fifth of the ripple": lambda n: (
+        "at 0.05, half the amplitude of the ripple, it smooths only a fifth of the ripple": lambda n: (
             round(1 - ripple_kept(n, sigma_r=0.05), 1) == 0.2
+        ),
+        "This halo reaches about two `sigma_s`, 15 pixels": lambda n: (
+            darkening_by_blur(n, 0, 8) > 0.3 > 0.1 > darkening_by_blur(n, 20, 24)
+            and round(2 * n.durand.SIGMA_S_FRACTION * max(n.L.shape)) == 15
+        ),
+        "made wider by the same factor, it changes the image about half as much": lambda n: (
+            0.4 < change(n, sigma_s=16.0) / change(n, sigma_r=0.8) < 0.6
+            and 0.4 < change(n, sigma_s=32.0) / change(n, sigma_r=1.6) < 0.6
+        ),
+        "two thirds of the ripple stay even far from the step": lambda n: (
+            round(3 * ripple_kept_by_guided(n, 0.0025)) == 2
         ),
         "over 10 pixels, its detail falls by 0.71 decades": lambda n: (
             falls_of_detail(n, 10)[0] == 0.71 and falls_of_detail(n, 1)[0] == 0
