@@ -92,6 +92,24 @@ def darkening_by_blur(n, near, far):
     return float(np.subtract(*map(np.log2, images))[wall].mean())
 
 
+def sweeps_of_a_step(n, width):
+    """Return how many sweeps of page 17 spread half of a difference between both sides of a row."""
+    solution = np.where(np.arange(width) < width / 2, -1.0, 1.0) * np.ones((2, 1))
+    right_side = n.poisson.laplacian(solution)
+    u = np.zeros_like(solution)
+    count = 0
+    while np.std(u - solution) > 0.5 * np.std(solution):
+        u = u + (n.poisson.laplacian(u) - right_side) / 5
+        count += 1
+    return count
+
+
+def many_samples_change(n, alpha):
+    """Return by how much more values of g change the image of page 17 at most, 1 = white."""
+    few = n.filtered(alpha=alpha, samples=24)[0]
+    return float(np.abs(few - n.filtered(alpha=alpha, samples=96)[0]).max())
+
+
 def filled_from_reference_alone(n):
     """Return which share of the moving pixels that the reference of notebook 24 lacks nothing else fills."""
     result = n.ghosts.remove_ghosts(n.three, n.times, n.g, fixed=1)
@@ -970,6 +988,18 @@ SENTENCES = {
     "17": {
         "the levels reduce most slopes (to 0.6 times in the median)": lambda n: (
             round(float(np.median(n.Phi)), 1) == 0.6
+        ),
+        "In the glass only 0.3 of a slope remains": lambda n: (
+            round(float(np.median(n.Phi[np.quantile(n.L, 0.97) < n.L])), 1) == 0.3
+        ),
+        "over twice the distance they need four times as many sweeps": lambda n: (
+            3.5 < sweeps_of_a_step(n, 48) / sweeps_of_a_step(n, 24) < 4.5
+        ),
+        "gets $r = g + \\sigma = -3.08$": lambda n: np.isclose(
+            n.local_laplacian.remap(np.zeros(1), -4.0, sigma=0.92, alpha=1.0, beta=0.0), -3.08
+        ),
+        "so 24 values of $g$ (`samples`) are too few": lambda n: (
+            many_samples_change(n, 0.5) > 2 * many_samples_change(n, 1.0)
         ),
         "It must flatten them most to reduce the range, so its edges are soft": lambda n: (
             fine_detail(n, "finest alone")
