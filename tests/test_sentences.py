@@ -1135,6 +1135,47 @@ SENTENCES = {
         "hardly anything of flag, rocket and wall": lambda n: all(
             mistaken(n, "chrominance", tone) < 0.02 for tone in ("light", "dark")
         ),
+        "so the curve adds only a third of a stop": lambda n: (
+            round(3 * list(n.relight.settle_steps(n.relight.shares(n.Y)))[-1].delta) == 1
+        ),
+        "With the three stops that the face lacks, the method would select blocks of the face": lambda n: (
+            selected_of_face(n, 0.35) == 0 and selected_of_face(n, 3.3) > 0.5
+        ),
+        "Up to a reach of 3 the method finds nine tenths of the face, and hardly anything else": lambda n: (
+            round(found_of_face(n, reach=3.0), 1) == 0.9 and n.near(3.0).mean() < 0.1
+        ),
+        "At 4 it finds nearly the whole face, but also the sky at the horizon": lambda n: (
+            found_of_face(n, reach=4.0) > 0.95 and n.near(4.0)[140:165, :100].mean() > 0.9
+        ),
+        "at 6 it finds most of the photo": lambda n: n.near(6.0).mean() > 0.6,
+        "But it also finds half of the hair, and specks of the hills": lambda n: (
+            round(2 * n.found("locus")[45:70, 150:235].mean()) == 1
+            and 0.1 < n.found("locus")[205:250, :60].mean() < 0.2
+        ),
+        "although it makes up more than half of all pixels that the Gaussian finds": lambda n: all(
+            n.skin.find_by_chrominance(n.portrait(tone))[~n.wide & (n.y > 200)].sum()
+            > n.skin.find_by_chrominance(n.portrait(tone)).sum() / 2
+            for tone in ("light", "dark")
+        ),
+        "three quarters of a face give its mean within a tenth of a stop": lambda n: all(
+            abs(mean_of_skin_off(n, tone, n.face)) < 0.1 for tone in ("light", "dark")
+        ),
+        "With the suit, the mean is 0.8 stops too low for the light face": lambda n: (
+            round(mean_of_skin_off(n, "light", n.y >= 0), 1) == -0.8
+        ),
+        "pass through $255 / 2^C$ at $q = 0$: 223 for hdrlab's $C$": lambda n: (
+            round(255 / 2**0.192) == 223
+            and np.allclose([n.relight.f(0, a=a, c=0.192) for a in (0.5, 1.79, 3)], 255 / 2**0.192)
+        ),
+        "Three stops down the face still has twenty levels of green": lambda n: (
+            levels_in_shade(n, -3) == 20
+        ),
+        "at level 82 instead of 121": lambda n: (
+            [round(corrected_shade(n, stops)) for stops in (-3, 0)] == [82, 121]
+        ),
+        "with the camera's own curve the face would be right": lambda n: all(
+            abs(corrected_shade(n, stops, own=True) - 122) < 1 for stops in (-5, -3, 0)
+        ),
         "The whole photo is off by two": lambda n: (
             round(128 - n.states["whole photo"][1].mean) == 2
         ),
@@ -1471,6 +1512,41 @@ def levels_in_shade(n, stops):
     shade = n.subjects.backlight((256, 384)).mask
     darker = n.colour.to_8bit(np.minimum(n.linear * 2.0**stops, 1))
     return len(np.unique(darker[shade][:, 1]))
+
+
+def corrected_shade(n, stops, own=False):
+    """Return the mean level of the face in a darker photo that got its light back, on page 19.
+
+    The table that adds the light follows the simulated curve, or the camera's own.
+    """
+    shade = n.subjects.backlight((256, 384)).mask
+    worse = n.colour.to_8bit(np.minimum(n.linear * 2.0**stops, 1))
+    table = n.relight.table(3.0 - stops)
+    if own:
+        light = n.colour.decode_srgb(np.arange(256) / 255)
+        table = np.rint(255 * n.colour.encode_srgb(np.minimum(light * 2.0 ** (3 - stops), 1)))
+    return float(n.battiato.brightness(table[worse])[shade].mean())
+
+
+def selected_of_face(n, delta):
+    """Return which share of the face lies in relevant blocks if the photo gets more light, on page 19."""
+    levels = n.battiato.brightness(n.relight.curve(delta)[n.Z])
+    return n.battiato.find_relevant_blocks(levels)[n.subjects.backlight((256, 384)).mask].mean()
+
+
+def found_of_face(n, reach):
+    """Return which share of the face the Gaussian finds up to a distance, on page 19."""
+    return float(n.near(reach)[n.subjects.backlight((256, 384)).mask].mean())
+
+
+def mean_of_skin_off(n, tone, where):
+    """Return by how many stops the mean of the skin found there is off that of the face, on page 19."""
+    light = n.colour.decode_srgb(n.astronaut / 255)
+    light[n.wide] *= n.DARKER if tone == "dark" else 1
+    levels = n.battiato.brightness(np.round(255 * n.colour.encode_srgb(light)))
+    is_found = n.skin.find_by_chrominance(n.portrait(tone)) & where
+    stops = n.relight.f_inv([levels[is_found].mean(), levels[n.face].mean()])
+    return float(stops[0] - stops[1])
 
 
 def longest_shares(n):
