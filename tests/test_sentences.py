@@ -230,6 +230,27 @@ def guided_base(n, epsilon):
     return np.float32(n.guided.guided(n.lL, radius=16, epsilon=epsilon))
 
 
+def patches_of_walker(n, field):
+    """Return the share of the walker's patches that match the walker, and their mean distance, on page 24."""
+    masks = [n.movers.shift_layer(n.small.mask, place) > 0.5 for place in n.strides]
+    here = masks[2][2:-2, 2:-2]
+    is_walker = masks[1][field.at[..., 1] + 2, field.at[..., 2] + 2]
+    return is_walker[here].mean(), field.d[here].mean()
+
+
+def rebuilt_from_empty_street(n):
+    """Return the mean distance of the walker's patches from those of a photo without her, on page 24."""
+    camera = n.camera.Camera(**n.WELL)
+    empty = n.camera.shoot(n.small.radiance, n.times, camera, rng=1).images
+    values = n.ldr_values.as_values(empty, n.times, n.g).v[1]
+    source = n.ldr_values.boost(values, n.times[2] / n.times[1])
+    Q = n.patchmatch.make_sources(source[None], 5)
+    start = n.patchmatch.start_field(n.P, Q, n.random)
+    search = n.patchmatch.search_steps(n.P, Q, start, radius=64, rng=np.random.default_rng(0))
+    field = [next(search) for _ in range(5)][-1]
+    return patches_of_walker(n, field)[1]
+
+
 def darkening_by_walkers(n):
     """Return by how many stops each of the three walkers alone darkens the plain merge of page 24."""
     masks = [n.movers.shift_layer(n.small.mask, place) for place in n.strides]
@@ -1302,6 +1323,12 @@ SENTENCES = {
     },
     "24": {
         "Three photos of the street are three stops apart": lambda n: apart(n.times, 3, 3),
+        "But only about a tenth of her patches come from the walker in the other photo": lambda n: (
+            0.05 < patches_of_walker(n, n.fields[-1])[0] < 0.15
+        ),
+        "Even a photo of the empty street gives nearly the same figure": lambda n: (
+            rebuilt_from_empty_street(n) < 1.1 * patches_of_walker(n, n.fields[-1])[1]
+        ),
         "at more than half of these pixels nothing does": lambda n: (
             filled_from_reference_alone(n) > 0.5
         ),
