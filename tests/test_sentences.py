@@ -1352,6 +1352,16 @@ SENTENCES = {
         "beyond three stops, eight times white, less than one in a hundred is left": lambda n: (
             np.mean(n.light > 8) < 0.01
         ),
+        "in flames, sunlit spots and the brightest panes of glass": lambda n: (
+            0.2 < np.sum(n.light[38:122, 195:290] > 8) / np.sum(n.light > 8) < 0.5
+        ),
+        "far more than the eye needs there, and has few left for the dark": lambda n: (
+            n.steps[1] > 2 * n.transfer.codes(n.transfer.pq, 1000, 10_000)
+            and n.steps[0] < n.transfer.codes(n.transfer.pq, 0.1, 1) / 5
+        ),
+        "the operator brightened all of them by about the same factor, a quarter of a stop": lambda n: (
+            np.abs(np.quantile(n.mean[n.light < 0.2], [0.1, 0.5, 0.9]) + 0.25).max() < 0.2
+        ),
         "with 10 bits they are 0.6 % at 1000 cd/m²": lambda n: (
             round(step_at(n, "gamma", 1000), 1) == 0.6
         ),
@@ -1360,7 +1370,7 @@ SENTENCES = {
             round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
         ),
         "With 12 bits the steps of PQ": lambda n: bits_without_bands(n, "PQ") == 12,
-        "HLG needs 13 bits to reach the same": lambda n: (
+        "Down to 0.01 cd/m², HLG needs 13 bits to reach the same": lambda n: (
             bits_without_bands(n, "HLG, 1000 cd/m²") == 13
         ),
         "and the gamma 15": lambda n: bits_without_bands(n, "gamma") == 15,
