@@ -112,9 +112,9 @@ pictures.picture(
 # $$\text{base}(p) = \frac{\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)\; l(q)}
 #   {\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)}, \qquad l = \log_{10} L.$$
 #
-# You may compute the sums directly, which is exact: loop over the offsets within $2\sigma_s$ or
-# $3\sigma_s$, in a square or a disc, and process all pixels at once. Beyond the edge there are
-# either no pixels or mirrored ones.
+# You may compute the sums directly: loop over the offsets within $2\sigma_s$ or $3\sigma_s$, in a
+# square or a disc, and process all pixels at once. Beyond the edge there are either no pixels or
+# mirrored ones.
 
 # %% task="layers"
 # Return base = bil(lL) and detail = lL - base.
@@ -203,8 +203,8 @@ pictures.picture(
 # half the size of level $k - 1$ (blur, then take every second pixel; round sides up), as long as
 # neither side falls below 32. Gradients are central differences over $2^{k+1}$ pixels of the image,
 # with mirrored edges. (A factor that all gradients of a level share cancels. The checks accept any.)
-# A gradient of $\alpha$ times the mean gradient of its level stays unchanged, and a larger one is
-# reduced, the more so the smaller $\beta$ is:
+# A gradient of $\alpha$ times the mean gradient of its level stays unchanged, a larger one is
+# reduced, and a smaller one is amplified, the more so the smaller $\beta$ is:
 #
 # $$\varphi_k = \Bigl(\frac{|\nabla l_k|}{\alpha\, \overline{|\nabla l_k|}}\Bigr)^{\beta - 1}, \qquad
 #   \Phi_d = \varphi_d, \qquad \Phi_k = \mathrm{enlarged}(\Phi_{k+1})\, \varphi_k.$$
