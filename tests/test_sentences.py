@@ -1159,6 +1159,10 @@ SENTENCES = {
         "so the curve adds only a third of a stop": lambda n: (
             round(3 * list(n.relight.settle_steps(n.relight.shares(n.Y)))[-1].delta) == 1
         ),
+        "with 16 in a row a quarter of the selected pixels is sky, with 8 nearly half": lambda n: (
+            round(4 * np.mean(n.Y[n.chosen(count=16)] > 130)) == 1
+            and 0.4 < np.mean(n.Y[n.chosen(count=8)] > 130) < 0.5
+        ),
         "With the three stops that the face lacks, the method would select blocks of the face": lambda n: (
             selected_of_face(n, 0.35) == 0 and selected_of_face(n, 3.3) > 0.5
         ),
