@@ -24,20 +24,16 @@ same photo, the white balance changed. A curve for each channel hides that from 
 An error counts by what it costs. A photo at the end that is nearly black measures little, and the
 camera's own processing bends it: half a stop there does not harm the map.
 
-Lamps that flicker brighten bands of a photo, see `motion`, so they also look like light that
-changed in parts of it, or like a wrong time. Where the two explanations are about equally good, the
-warning says that the pixels do not show which is true.
+`causes` decides what the warning says.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, to_256
-from hdrlab.diagnostics import flat_patches, motion, response_steps
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics import flat_patches, response_steps
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
 
 # side of a part of the image, in patches
@@ -71,14 +67,6 @@ MIN_SIGNIFICANCE = 4.0
 MIN_STANDARD_ERROR = 0.003
 # fraction of the variance over the image that the distance from the center must explain
 MIN_EXPLAINED_BY_RADIUS = 0.5
-# stops of the map's spread; below, the map explains its photos, and slight differences do not
-# matter
-MAX_SOUND_SPREAD = 0.1
-# stops of the map's spread; below, no time can be wrong that matters
-MAX_EXACT_SPREAD = 0.015
-# Flicker and another cause are equally good explanations if the other one's evidence is between its
-# limit divided and multiplied by this factor.
-UNDECIDED_FACTOR = 2.0
 
 TimesSource = Literal["kept", "corrected", "relative"]
 
@@ -115,20 +103,6 @@ class Contradictions:
         if self.cost <= MIN_COST_STOPS:
             return ()
         return tuple(np.flatnonzero(np.abs(self.stops) > MIN_WRONG_STOPS).tolist())
-
-    @property
-    def local(self) -> bool:
-        """Whether no response with one factor per photo can explain the bracket."""
-        regions = self.regions[np.isfinite(self.regions)]
-        significance = self.significance[np.isfinite(self.significance)]
-        if not len(regions):
-            return False
-        typical = np.median(regions)
-        if typical > MIN_LOCAL_STOPS:
-            return True
-        if not len(significance):
-            return False
-        return bool(typical > MIN_SLIGHT_STOPS and np.median(significance) > MIN_SIGNIFICANCE)
 
 
 def find_contradictions(
@@ -344,76 +318,3 @@ def _tile_medians(residuals: F64, tile: Indices) -> tuple[F64, F64]:
     errors = np.maximum(1.25 * sigma / np.sqrt(counts), MIN_STANDARD_ERROR)
     is_large = counts >= MIN_PATCHES_PER_TILE
     return medians[is_large], errors[is_large]
-
-
-def warn_of_contradictions(
-    found: Contradictions,
-    names: Sequence[str],
-    spread: float = np.inf,
-    *,
-    band_stops: float = 0.0,
-    times: TimesSource = "kept",
-) -> str:
-    """Return the warning about what is wrong, in which photo and by how much; "" if nothing is.
-
-    Parameters
-    ----------
-    found : Contradictions
-    names : sequence of str
-        Names of the photos.
-    spread : float
-        The map's spread in stops. If it is small, only wrong times and large differences matter.
-    band_stops : float
-        Stops by which the light changes in horizontal bands, see `motion.measure_motion`.
-    times : {"kept", "corrected", "relative"}
-        Whether the times stayed as stated, whether hdrlab tried to correct them from the pixels, or
-        whether they are relative. The advice depends on it.
-    """
-    if found.tints.max() > MIN_WRONG_STOPS:
-        frame = names[int(found.tints.argmax())]
-        return warning_text("white_balance", frame=frame, stops=found.tints.max())
-    corners = found.corners[np.isfinite(found.corners)]
-    if len(corners) and np.median(corners) > MIN_SLIGHT_STOPS:
-        return warning_text("corners", stops=np.median(corners))
-    has_bands = band_stops > motion.MIN_BAND_STOPS
-    largest = float(np.abs(found.stops[list(found.wrong)]).max(initial=0.0))
-    # Wrong times also look a little like local changes, because they hit dark and bright parts unequally.
-    if found.local and np.nanmedian(found.regions) >= largest:
-        text = _warn_of_local_changes(found, names, spread, band_stops if has_bands else 0.0)
-        if text:
-            return text
-    if not found.wrong or spread < MAX_EXACT_SPREAD:
-        return ""
-    named = sorted(found.wrong, key=lambda j: -abs(found.stops[j]))[:MAX_NAMED_PHOTOS]
-    off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in sorted(named))
-    if len(found.wrong) > len(named):
-        off += f" and {len(found.wrong) - len(named)} more"
-    if has_bands and largest < UNDECIDED_FACTOR * MIN_WRONG_STOPS:
-        return warning_text("flicker_or_times", bands=band_stops, off=off)
-    if np.isfinite(found.stops).sum() == 3:
-        off += warning_text("of_three")
-    if times == "relative":
-        return warning_text("relative_times", off=off)
-    return warning_text("times", off=off, advice=warning_text(f"{times}_times_advice"))
-
-
-def _warn_of_local_changes(
-    found: Contradictions, names: Sequence[str], spread: float, band_stops: float
-) -> str:
-    """Return the warning about light that changed in parts of the image, or ""."""
-    stops = float(np.nanmedian(found.regions))
-    j = int(np.nanargmax(found.regions))
-    if band_stops:
-        if stops < MIN_LOCAL_STOPS / UNDECIDED_FACTOR:
-            return ""
-        if stops < MIN_LOCAL_STOPS * UNDECIDED_FACTOR:
-            return warning_text(
-                "flicker_or_local",
-                bands=band_stops,
-                stops=stops,
-                dark=names[j],
-                bright=names[j + 1],
-            )
-    if stops > MIN_LOCAL_STOPS or spread > MAX_SOUND_SPREAD:
-        return warning_text("local", stops=stops, dark=names[j], bright=names[j + 1])
-    return ""

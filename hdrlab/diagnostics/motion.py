@@ -55,8 +55,11 @@ MIN_MOVING_FRACTION = 0.006
 MIN_BAND_STOPS = 0.055
 # Under flickering lamps, up to 0.02 of the blocks of a still scene deviate.
 MAX_FLICKER_FRACTION = 0.03
-# Bands count if b is that many times what columns show; still scenes stay below 1.8.
-MIN_ROWS_OVER_COLUMNS = 2.5
+# Bands do not count if b is less than the first number times what columns show, and fully from the
+# second one on. In between they count in part, so that a small change of the photos never changes
+# the measure by much. Still scenes stay below 1.8.
+MIN_ROWS_OVER_COLUMNS = 2.25
+FULL_ROWS_OVER_COLUMNS = 2.75
 
 
 class Motion(NamedTuple):
@@ -92,11 +95,11 @@ def measure_motion(
     Returns
     -------
     fraction, band_stops : float
-        The fraction is that of the blocks that two photos measure; 0 where these are few, or where
-        flickering lamps explain it. Above MIN_MOVING_FRACTION, something moved. Of more than
-        MAX_COMPARED_PHOTOS photos, so many are compared. The bands are the
-        RMS of b in stops, 0 unless it is MIN_ROWS_OVER_COLUMNS times that of columns. Above
-        MIN_BAND_STOPS, lamps flicker.
+        The fraction is that of the blocks that two photos measure; 0 where these are few. Above
+        MIN_MOVING_FRACTION, something moved, or lamps flicker: see `causes`. Of more than
+        MAX_COMPARED_PHOTOS photos, so many are compared. The bands are the RMS of b in stops, 0
+        unless it is MIN_ROWS_OVER_COLUMNS times that of columns. Above MIN_BAND_STOPS, lamps
+        flicker.
 
     Raises
     ------
@@ -134,10 +137,16 @@ def measure_motion(
     is_clear = minimum_around(np.asarray(is_seen), CLIPPING_REACH)
     R, W = _sum_residuals(Z, curves, times_s, relative_weights, is_clear)
     fraction = _measure_moving_fraction(R, W, MIN_BLOCK_WEIGHT * BLOCK_SIDE**2 * channel_count)
-    band_stops = rows if rows > MIN_ROWS_OVER_COLUMNS * columns else 0.0
-    if band_stops > MIN_BAND_STOPS and fraction < MAX_FLICKER_FRACTION:
-        fraction = 0.0
-    return Motion(fraction, band_stops)
+    return Motion(fraction, rows * _weigh_rows(rows, columns))
+
+
+def _weigh_rows(rows: float, columns: float) -> float:
+    """Return how much bands of rows count, from 0 to 1, if columns have such bands, too."""
+    excess = rows - MIN_ROWS_OVER_COLUMNS * columns
+    span = (FULL_ROWS_OVER_COLUMNS - MIN_ROWS_OVER_COLUMNS) * columns
+    if excess >= span:
+        return 1.0
+    return max(excess / span, 0.0)
 
 
 def _sum_residuals(

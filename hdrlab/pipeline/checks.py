@@ -9,19 +9,15 @@ import numpy as np
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import Task, run_in_background
-from hdrlab.diagnostics import consistency, contradictions, motion, tones
+from hdrlab.diagnostics import causes, consistency, contradictions, tones
 from hdrlab.diagnostics.contradictions import Contradictions, TimesSource
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.tones import PartError
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.pipeline.options import Options
 
-# stops of spread; brackets with true times stay below 0.2, those of scanned film included
-MAX_EXPLAINED_SPREAD = 0.25
 # stops of spread of a map that shows what no photo shows
 MIN_WORTHLESS_STOPS = 0.5
-# stops by which a photo must deviate to be named in a warning
-MIN_NAMED_DEVIATION = 0.1
 # photos that a note names
 MAX_NAMED_PHOTOS = 10
 
@@ -123,26 +119,15 @@ def _describe_problem(
     options: Options,
 ) -> str:
     """Return the warning about the most likely cause of contradictions, or ""."""
-    names = state.bracket.names
-    spread = state.spread
     times: TimesSource = "kept" if options.times == "stated" else "corrected"
     if state.bracket.has_relative_times:
         times = "relative"
-    text = contradictions.warn_of_contradictions(
-        found, names, spread, band_stops=band_stops, times=times
+    return causes.warn_of_contradictions(
+        found,
+        state.bracket.names,
+        state.spread,
+        band_stops=band_stops,
+        moving_fraction=moving_fraction,
+        times=times,
+        deviations=consistency.measure_deviations(state.medians).tolist(),
     )
-    if text:
-        return text
-    if moving_fraction > motion.MIN_MOVING_FRACTION:
-        return warning_text("moved", percent=100 * moving_fraction)
-    if band_stops > motion.MIN_BAND_STOPS:
-        return warning_text("flicker", stops=band_stops)
-    if spread > MAX_EXPLAINED_SPREAD:
-        deviations = consistency.measure_deviations(state.medians)
-        off = ", ".join(
-            f"{name} by {stops:+.2f}"
-            for name, stops in zip(names, deviations, strict=True)
-            if abs(stops) > MIN_NAMED_DEVIATION
-        )
-        return warning_text("unexplained", stops=spread, off=off)
-    return ""

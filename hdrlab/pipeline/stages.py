@@ -15,13 +15,13 @@ import numpy as np
 from hdrlab.core import steps
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import run_in_background
-from hdrlab.diagnostics import consistency, motion, tones
+from hdrlab.diagnostics import causes, consistency, motion, tones
+from hdrlab.diagnostics.causes import MAX_EXPLAINED_SPREAD
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable
 from hdrlab.pipeline import checks, corrections, dark_pixels, recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method
-from hdrlab.pipeline.checks import MAX_EXPLAINED_SPREAD
 from hdrlab.pipeline.merging import MergeRecord, merge_photos
 from hdrlab.pipeline.options import FLARE, GHOSTS, MERGES, TIMES, WEIGHTS, Options
 from hdrlab.radiance import scales
@@ -276,7 +276,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     # Photos that "mtb" could not align may be rotated, and "auto" would align them. With any other
     # method, something moved that no alignment undoes.
     is_explained_by_rotation = is_misaligned and options.align == "mtb"
-    is_moving = measured_motion.fraction > motion.MIN_MOVING_FRACTION
+    is_moving = causes.is_moving(*measured_motion)
     may_have_ghosts = is_moving and not is_explained_by_rotation
     removes_ghosts = options.ghosts in ("regions", "reference") or (
         options.ghosts == "auto" and may_have_ghosts

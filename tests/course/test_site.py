@@ -14,6 +14,7 @@ from dataclasses import replace
 from functools import partial
 from html.parser import HTMLParser
 from importlib.util import find_spec
+from itertools import combinations
 from pathlib import Path
 
 import nbformat
@@ -23,7 +24,7 @@ from support.missing_environment import ENVIRONMENTS, turn_clock_back
 
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, pages as build, reference
-from hdrlab.diagnostics import doubts
+from hdrlab.diagnostics import causes, doubts
 from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture
 from hdrlab.io.web import decode_picture
@@ -595,6 +596,9 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
                 + "\n"
             )
     printed += "\n".join(re.sub(r"\{.*?\}", "%", one) for one in doubts.SENTENCES.values())
+    for pair in combinations(causes.CAUSES, 2):
+        named = " or ".join(doubts.SENTENCES[f"{cause}_cause"] for cause in pair)
+        printed += "\n" + doubts.warning_text("either", causes=named, evidence="", advice="")
     quotes = quotes_of_the_page_on_warnings()[: -len(REFUSED)]
     assert len(quotes) >= 12
     for quote in quotes:
@@ -604,6 +608,8 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
 
 # Errors and parts of sentences, which the page does not explain one by one.
 UNEXPLAINED = {
+    *(f"{cause}_{part}" for cause in causes.CAUSES for part in ("cause", "evidence", "advice")),
+    "either",
     "order",
     "in_common",
     "darker",

@@ -6,7 +6,7 @@ import pytest
 from benchmarks.verdicts import brackets
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.diagnostics import contradictions, exposure_times, flat_patches, plausibility
+from hdrlab.diagnostics import causes, contradictions, exposure_times, flat_patches, plausibility
 from hdrlab.errors import CalibrationError
 
 WRONG = np.array([1, 1, 2, 1, 1])
@@ -54,7 +54,7 @@ def test_masked_pixels_do_not_count(taken):
     valid[:, :30] = False
     masked = contradictions.find_contradictions(images, taken.times, valid=valid)
     assert masked.wrong == ()
-    assert not masked.local
+    assert causes.warn_of_contradictions(masked, "abcde") == ""
 
 
 def test_an_error_shared_by_all_photos_has_no_cost(taken):
@@ -113,7 +113,7 @@ def test_few_flat_patches_accuse_no_lens_and_no_white_balance(sound, number, tmp
 def test_an_estimate_of_the_times_is_recommended_only_where_none_was_made(
     found, times, recommends_estimate
 ):
-    text = contradictions.warn_of_contradictions(found, "abcde", times=times)
+    text = causes.warn_of_contradictions(found, "abcde", times=times)
     assert "c by" in text
     assert ("--times estimate" in text) == recommends_estimate
     assert ("--stops" in text) == (times == "relative")
