@@ -33,11 +33,9 @@ from hdrlab.diagnostics.contradictions import (
     Contradictions,
     TimesSource,
 )
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.doubts import MARGIN, warning_text
 from hdrlab.diagnostics.motion import MAX_FLICKER_FRACTION, MIN_BAND_STOPS, MIN_MOVING_FRACTION
 
-# A verdict must be the same for each statistic larger or smaller by this factor.
-MARGIN = 1.1
 # stops of spread; brackets with true times stay below 0.2, those of scanned film included
 MAX_EXPLAINED_SPREAD = 0.25
 # stops of the map's spread; below, the map explains its photos, and slight differences do not
@@ -296,9 +294,19 @@ def _list_wrong_times(found: Contradictions, names: Sequence[str]) -> str:
     Close to the limit none may be wrong; then it is the photo with the largest error.
     """
     sizes = np.nan_to_num(np.abs(found.stops), nan=0.0)
-    wrong = found.wrong or (int(sizes.argmax()),)
-    named = sorted(wrong, key=lambda j: -sizes[j])[:MAX_NAMED_PHOTOS]
-    off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in sorted(named))
+    off = _list_errors(found.wrong or (int(sizes.argmax()),), found.stops, names)
+    if len(found.other_stops):
+        other = replace(found, stops=found.other_stops).wrong
+        if other:
+            other_off = _list_errors(other, found.other_stops, names)
+            off += warning_text("instead", off=other_off)
+    return off
+
+
+def _list_errors(wrong: Sequence[int], stops: F64, names: Sequence[str]) -> str:
+    """Return the names of photos and their errors; of many photos, those with the largest errors."""
+    named = sorted(wrong, key=lambda j: -abs(stops[j]))[:MAX_NAMED_PHOTOS]
+    off = ", ".join(f"{names[j]} by {stops[j]:+.2f}" for j in sorted(named))
     if len(wrong) > len(named):
         off += f" and {len(wrong) - len(named)} more"
     return off

@@ -34,6 +34,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, to_256
 from hdrlab.diagnostics import flat_patches, response_steps
+from hdrlab.diagnostics.doubts import MARGIN
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
 
 # side of a part of the image, in patches
@@ -84,6 +85,9 @@ class Contradictions:
     """What contradicts the exposure times of a bracket; the module explains the fields.
 
     stops, tints : (P,)
+    other_stops : (P,)
+        The errors by another straight line that is about as likely, and makes other photos wrong;
+        empty if there is none.
     regions, significance, corners : (P - 1,)
     cost : float
 
@@ -96,13 +100,19 @@ class Contradictions:
     corners: F64 = field(default_factory=_no_values)
     cost: float = np.inf
     tints: F64 = field(default_factory=_no_tint)
+    other_stops: F64 = field(default_factory=_no_values)
 
     @property
     def wrong(self) -> tuple[int, ...]:
         """The photos whose times are wrong, and change the map."""
         if self.cost <= MIN_COST_STOPS:
             return ()
-        return tuple(np.flatnonzero(np.abs(self.stops) > MIN_WRONG_STOPS).tolist())
+        return _find_wrong(self.stops)
+
+
+def _find_wrong(stops: F64) -> tuple[int, ...]:
+    """Return the photos whose errors in stops are large."""
+    return tuple(np.flatnonzero(np.abs(stops) > MIN_WRONG_STOPS).tolist())
 
 
 def find_contradictions(
@@ -191,7 +201,26 @@ def find_contradictions(
         corners=corners,
         cost=measure_cost(stack, stops),
         tints=tints,
+        other_stops=_find_other_stops(fit.x, B_run, frames, stops),
     )
+
+
+def _find_other_stops(x: F64, B: F64, frames: slice, stops: F64) -> F64:
+    """Return the errors (P,) by another line that is about as likely, and makes other photos wrong.
+
+    x and B are those of the frames that are connected. With three of them, each one may be wrong,
+    and the warning says so anyway.
+    """
+    if len(B) <= 3:
+        return _no_values()
+    wrong = set(_find_wrong(stops))
+    for residuals in response_steps.list_trends(x, B, margin=MARGIN):
+        other_stops = np.full(len(stops), np.nan)
+        other_stops[frames] = residuals / np.log(2)
+        other = set(_find_wrong(other_stops))
+        if wrong and other and not wrong & other:
+            return other_stops
+    return _no_values()
 
 
 def _find_photos_with_flat_patches(has_flat: Mask) -> Mask:
@@ -210,6 +239,10 @@ def _expand(found: Contradictions, chosen: Indices, count: int) -> Contradiction
     """Return what is known of some photos of a bracket as fields for all `count` photos."""
     stops = np.full(count, np.nan)
     stops[chosen] = found.stops
+    other_stops = found.other_stops
+    if len(other_stops):
+        other_stops = np.full(count, np.nan)
+        other_stops[chosen] = found.other_stops
     tints = np.zeros(count)
     tints[chosen] = found.tints
 
@@ -221,6 +254,7 @@ def _expand(found: Contradictions, chosen: Indices, count: int) -> Contradiction
     return replace(
         found,
         stops=stops,
+        other_stops=other_stops,
         tints=tints,
         regions=expand_pairs(found.regions),
         significance=expand_pairs(found.significance),

@@ -1,7 +1,11 @@
-"""The texts of warnings and notes, kept together in doubts.toml so that they read alike."""
+"""The texts of warnings and notes, kept together in doubts.toml so that they read alike; their margin."""
 
 import tomllib
 from pathlib import Path
+
+# A verdict must be the same for statistics that are larger or smaller by this factor. If it is not,
+# the warning claims less: other processors round differently.
+MARGIN = 1.1
 
 SENTENCES: dict[str, str] = tomllib.loads(Path(__file__).with_name("doubts.toml").read_text("utf8"))
 

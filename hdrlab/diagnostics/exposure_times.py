@@ -226,8 +226,9 @@ def doubts(found: Estimate) -> tuple[str, ...]:
     if not found.accepted:
         return ()
     largest = float(np.abs(found.stops).max())
-    if largest > MAX_ROUGH_STOPS:
+    if len(found.stops) == 3:
+        if largest > MAX_ROUNDING_STOPS:
+            return (warning_text("one_of_three", middle=1.5 * largest, end=3 * largest),)
+    elif largest > MAX_ROUGH_STOPS:
         return (warning_text("far", stops=largest),)
-    if len(found.stops) == 3 and largest > MAX_ROUNDING_STOPS:
-        return (warning_text("one_of_three", middle=1.5 * largest, end=3 * largest),)
     return ()

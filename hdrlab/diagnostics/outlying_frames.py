@@ -17,6 +17,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Mask, as_mask, as_stack, levels
 from hdrlab.diagnostics import flat_patches, response_steps
+from hdrlab.diagnostics.doubts import MARGIN
 
 # stops in a typical patch, by which photos contradict each other
 MIN_CONTRARY_STOPS = 0.3
@@ -90,10 +91,12 @@ def find_outlying_frames(
         ]
         max_errors = [float(errors.max(initial=0)) for errors in errors_without]
         best = int(np.argmin(max_errors))
+        # With a higher limit, two photos that could be left out are both named: it is never one of
+        # them in one calculation, and the other in the next.
         rivals = tuple(
             j
             for j, other_error in zip(tried, max_errors, strict=True)
-            if other_error <= MAX_AGREEING_STOPS and j != tried[best]
+            if other_error <= MARGIN * MAX_AGREEING_STOPS and j != tried[best]
         )
         error = max_errors[best]
         pair_errors = errors_without[best]

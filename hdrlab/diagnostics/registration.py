@@ -25,6 +25,7 @@ import numpy as np
 from hdrlab.align import homography, light, mtb
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import blur, warp
+from hdrlab.diagnostics.doubts import MARGIN
 
 # pixels of the overview; distances at which other offsets are compared
 NEAR_PIXELS = 2
@@ -82,6 +83,8 @@ class Validation:
     confirmed : bool, optional
         Whether the light of the photos confirms `step`; None if that was not checked, or if too few
         pixels are well exposed in both photos.
+    is_borderline : bool
+        Whether the photos are misaligned by so little evidence that they may as well be aligned.
     """
 
     moving: int
@@ -96,11 +99,17 @@ class Validation:
     failure: str
     apart: bool = False
     confirmed: bool | None = None
+    is_borderline: bool = False
 
     @property
     def reliable(self) -> bool:
         """Whether no reason was found not to trust H."""
         return not self.failure
+
+    @property
+    def is_misaligned(self) -> bool:
+        """Whether the photos are clearly not aligned, or light does not confirm that they are."""
+        return self.apart or self.confirmed is False
 
     @property
     def known(self) -> bool:
@@ -129,9 +138,9 @@ class Comparison:
         It returns d, of the overview or of that size.
     error : function of d
         It returns e, and `light.ERROR_WITHOUT_OVERLAP` if the photos have too little in common.
-    lower : function of two d
+    lower : function of two d, and optionally of a margin
         It returns (5,) bool: whether the first is clearly lower in each quarter, and in the whole
-        image.
+        image. The margin multiplies the difference that is needed.
     middle : (h, w)
         The middle of the fixed photo, NaN where it measures nothing.
     max_aligned_error : float
@@ -144,7 +153,7 @@ class Comparison:
     scale: int
     differences: Callable[..., F64]
     error: Callable[[F64], float]
-    lower: Callable[[F64, F64], Mask]
+    lower: Callable[..., Mask]
     middle: F32
     max_aligned_error: float
 
@@ -161,7 +170,7 @@ def compare_light(moving: int, fixed: int, X: F32, scale: int = 1) -> Comparison
     def differences(H: F64, pixel: int = scale) -> F64:
         return light.differences(X, homography.enlarge(H, 1 / scale), points)
 
-    def lower(d: F64, other: F64) -> Mask:
+    def lower(d: F64, other: F64, margin: float = 1.0) -> Mask:
         gain = other**2 - d**2
         is_known = np.isfinite(gain)
         gain = np.where(is_known, gain, 0)
@@ -172,7 +181,7 @@ def compare_light(moving: int, fixed: int, X: F32, scale: int = 1) -> Comparison
         variance = np.maximum(gain_square_mean - gain_mean**2, 0)
         standard_error = np.sqrt(variance / np.maximum(count, 1))
         needed = other_mean * MIN_RELATIVE_GAIN + MIN_GAIN_SIGMAS * standard_error
-        return np.asarray((count >= MIN_COMPARED_PIXELS) & (gain_mean > needed))
+        return np.asarray((count >= MIN_COMPARED_PIXELS) & (gain_mean > margin * needed))
 
     return Comparison(
         moving=moving,
@@ -213,14 +222,14 @@ def compare_bits(
         differing, compared = d.sum(axis=0)
         return float(differing / compared) if compared else light.ERROR_WITHOUT_OVERLAP
 
-    def lower(d: F64, other: F64) -> Mask:
+    def lower(d: F64, other: F64, margin: float = 1.0) -> Mask:
         d = np.vstack([d, d.sum(axis=0)])
         other = np.vstack([other, other.sum(axis=0)])
         d_rate = d[:, 0] / np.maximum(d[:, 1], 1)
         other_rate = other[:, 0] / np.maximum(other[:, 1], 1)
         standard_error = np.sqrt(other_rate / np.maximum(other[:, 1], 1))
         needed = other_rate * MIN_RELATIVE_GAIN + MIN_GAIN_SIGMAS * standard_error
-        return np.asarray(other_rate - d_rate > needed)
+        return np.asarray(other_rate - d_rate > margin * needed)
 
     return Comparison(
         moving=moving,
@@ -261,19 +270,28 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     if error == light.ERROR_WITHOUT_OVERLAP or all_fit:
         return uninformative(pair.moving, pair.fixed)
     sure = confidence(pair.error(pair.differences(H)), elsewhere)
-    better_quarters = np.any([pair.lower(other, d)[:-1] for other in near], axis=0)
-    better_count = int(better_quarters.sum())
+
+    def count_better_quarters(margin: float) -> int:
+        is_better = [pair.lower(other, d, margin)[:-1] for other in near]
+        return int(np.any(is_better, axis=0).sum())
+
+    better_count = count_better_quarters(1.0)
     is_best_nearby = all(pair.lower(d, other)[-1] for other in near)
     center = (np.array(pair.shape[::-1]) - 1) / 2
     dx, dy = warp.apply(H, [center])[0] - center
     reason = failure_reason(pair, H, elsewhere, is_best_nearby, better_count)
     if max(abs(dx), abs(dy)) >= limit:
         reason = f"the offset is at the end of the search range, {limit} pixels"
-    if sure >= MIN_CONFIDENCE:
+    is_clearly_apart = True
+    apart = False
+    if sure >= MIN_CONFIDENCE / MARGIN:
+        is_clearly_apart &= count_better_quarters(MARGIN) >= MIN_ROTATED_QUARTERS
         apart = better_count >= MIN_ROTATED_QUARTERS
-    else:
+    if sure < MIN_CONFIDENCE * MARGIN:
         error_in_place = pair.error(pair.differences(identity, 8 * coarse))
-        apart = error_in_place > pair.max_aligned_error
+        is_clearly_apart &= error_in_place > MARGIN * pair.max_aligned_error
+        if sure < MIN_CONFIDENCE:
+            apart = error_in_place > pair.max_aligned_error
     return Validation(
         moving=pair.moving,
         fixed=pair.fixed,
@@ -286,6 +304,7 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
         informative=True,
         failure=reason,
         apart=apart,
+        is_borderline=apart and not is_clearly_apart,
     )
 
 

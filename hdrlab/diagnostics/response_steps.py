@@ -118,12 +118,22 @@ def remove_trend(x: F64, B: F64) -> F64:
 
     The line passes through two frames: those that leave the least sum of sqrt |x|.
     """
+    return list_trends(x, B)[0]
+
+
+def list_trends(x: F64, B: F64, *, margin: float = 1.0) -> list[F64]:
+    """Return x less each straight line that leaves at most `margin` times the least sum of sqrt |x|.
+
+    The best one comes first. Each line passes through two frames.
+    """
     residuals = []
     for i, k in combinations(range(len(B)), 2):
         if B[k] != B[i]:
             slope = (x[k] - x[i]) / (B[k] - B[i])
             residuals.append(x - x[i] - slope * (B - B[i]))
-    return min(residuals, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
+    costs = np.array([np.round(np.sqrt(np.abs(r)).sum(), 6) for r in residuals])
+    order = np.argsort(costs, kind="stable")
+    return [residuals[n] for n in order if costs[n] <= margin * costs[order[0]]]
 
 
 def trust_pairs(H: F64) -> Pairs:

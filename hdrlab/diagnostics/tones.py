@@ -54,6 +54,8 @@ MIN_PART_BLOCKS = 10
 MAX_DARK_STOPS = 1.0
 # stops by which the map or two photos may differ in another part; sound real brackets stay below 0.46
 MAX_PART_STOPS = 0.5
+# The map follows the longer of two photos if it differs from it by at most this, in stops.
+MAX_FOLLOWING_STOPS = 0.25
 # merges that weight a photo by its exposure time, so that a long one decides in the dark
 MERGES_BY_TIME = ("shot", "likelihood")
 CHANNEL_NAMES = ("red", "green", "blue")
@@ -332,10 +334,13 @@ def warn_of_parts(
         if alternatives:
             text += warning_text("parts_advice", options=" and ".join(alternatives))
         return text
+    follows = ""
+    if worst is not None and abs(worst.stops) <= MAX_FOLLOWING_STOPS:
+        follows = warning_text("photo_parts_follows")
     worst = _find_worst(part for part in parts if part.is_between_photos)
     if worst is not None and abs(worst.stops) >= MAX_PART_STOPS:
         place = _describe_place(worst, names)
-        return warning_text("photo_parts", stops=abs(worst.stops), place=place)
+        return warning_text("photo_parts", stops=abs(worst.stops), place=place, follows=follows)
     return ""
 
 

@@ -169,7 +169,7 @@ def align_by_shift(moving: int, B: Photograph, fixed: int, A: Photograph) -> Val
     fit = rigid_motion.check(B.Y, A.Y, first.step, level)
     if fit.is_confirmed or not fit.is_usable:
         return first
-    return replace(first, confirmed=False)
+    return replace(first, confirmed=False, is_borderline=not fit.is_refuted)
 
 
 def confirm(first: Validation, H: F64) -> Validation:
@@ -182,6 +182,7 @@ def confirm(first: Validation, H: F64) -> Validation:
         failure="",
         apart=False,
         confirmed=True,
+        is_borderline=False,
     )
 
 
@@ -274,7 +275,12 @@ def improve(
         return shifted
     if tiles.has_enough_blocks and tiles.is_confirmed and tiles.displacement <= MAX_DISPLACEMENT:
         return PairResult(validation=confirm(best.validation, H), method=best.method)
-    return PairResult(validation=replace(best.validation, confirmed=False), method=best.method)
+    fits = [tiles, rigid_motion.check(B.Y, A.Y, H, level)]
+    if not found.is_confirmed:
+        fits.append(found)
+    is_borderline = not all(fit.is_refuted for fit in fits if fit.is_usable)
+    unconfirmed = replace(best.validation, confirmed=False, is_borderline=is_borderline)
+    return PairResult(validation=unconfirmed, method=best.method)
 
 
 def find_motion(B: Photograph, A: Photograph, start: F64, level: int) -> Fit:

@@ -50,6 +50,8 @@ class Assembly:
         How hdrlab made the map, as sentences. `assemble --verbose` and the report show them.
     doubts : tuple of str
         Warnings, as sentences; an empty tuple means that no problem was found.
+    is_misaligned : bool
+        Whether photos are clearly not aligned, so that contradictions between them are no news.
     moving : (h, w) int32 or None
         Numbered regions in which something moved, 0 elsewhere; None if ghosts were not removed.
     glare : (h, w) bool or None
@@ -76,6 +78,7 @@ class Assembly:
     notes: tuple[str, ...] = ()
     details: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
+    is_misaligned: bool = False
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
     s: NDArray[np.float32] | None = None

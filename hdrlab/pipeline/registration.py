@@ -58,6 +58,7 @@ def align_bracket(
     else:
         advice = ADVICE_ABOUT_GHOSTS + ADVICE
     doubts, notes = describe_pairs(found.pairs, bracket.names, advice)
+    is_misaligned = any(pair.is_misaligned and not pair.is_borderline for pair in found.pairs)
     aligned = apply_alignment(bracket, found.transforms, g, in_place=in_place)
     homographies = warp.as_homographies(found.transforms)
     height, width = bracket.images.shape[1:3]
@@ -70,6 +71,7 @@ def align_bracket(
         homographies=homographies,
         details=found.notes + notes,
         doubts=doubts,
+        is_misaligned=is_misaligned,
     )
 
 
@@ -81,7 +83,11 @@ def describe_pairs(
     A pair of which nothing is known is no reason for a warning: it stays as it is, and where its
     neighbors did not move either this is where it belongs.
     """
-    misaligned = [pair for pair in pairs if pair.apart]
+    doubtful = [pair for pair in pairs if pair.is_misaligned]
+    if doubtful and all(pair.is_borderline for pair in doubtful):
+        pair_names = _name_pairs(doubtful, names)
+        return (warning_text("borderline", pair=pair_names, advice=advice),), ()
+    misaligned = [pair for pair in pairs if pair.apart and not pair.is_borderline]
     if misaligned:
         doubt = warning_text(
             "misaligned",
@@ -90,7 +96,7 @@ def describe_pairs(
             advice=advice,
         )
         return (doubt,), ()
-    unconfirmed = [pair for pair in pairs if pair.confirmed is False]
+    unconfirmed = [pair for pair in doubtful if not pair.is_borderline]
     if unconfirmed:
         names_of_pairs = _name_pairs(unconfirmed, names)
         return (warning_text("unconfirmed", pair=names_of_pairs, advice=advice),), ()

@@ -30,6 +30,7 @@ from hdrlab.align import cerman, homography
 from hdrlab.align.light import BRIGHT, DARK, SMOOTHING_SIGMA
 from hdrlab.core.arrays import F32, F64, Array
 from hdrlab.core.filters import warp
+from hdrlab.diagnostics.doubts import MARGIN
 
 # The motion is measured at the largest level of the pyramid that is not larger.
 MAX_PIXELS = 2**18
@@ -119,11 +120,22 @@ class Fit:
     @property
     def is_confirmed(self) -> bool:
         """Whether the photos are similar, and most blocks would stay where they are."""
+        return self._is_confirmed(margin=1.0)
+
+    @property
+    def is_refuted(self) -> bool:
+        """Whether it takes more than MARGIN to make `is_confirmed` or `is_usable` another one."""
+        is_clearly_usable = self.usable >= MARGIN * MIN_USABLE_FRACTION
+        return is_clearly_usable and not self._is_confirmed(margin=MARGIN)
+
+    def _is_confirmed(self, margin: float) -> bool:
+        """Return `is_confirmed` for measures that are better by the factor `margin`."""
+        similarity = margin * self.similarity
         if not self.has_enough_blocks:
-            return self.similarity >= MIN_SIMILARITY_WITHOUT_BLOCKS
-        if self.similarity < MIN_SIMILARITY:
+            return similarity >= MIN_SIMILARITY_WITHOUT_BLOCKS
+        if similarity < MIN_SIMILARITY:
             return False
-        return self.median_shift <= allowed_shift(self.scale)
+        return self.median_shift <= margin * allowed_shift(self.scale)
 
     @property
     def median_shift(self) -> float:

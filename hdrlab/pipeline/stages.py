@@ -192,7 +192,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     yield state
 
     # Misaligned photos contradict each other, so contradictions are no news from here on.
-    is_misaligned = bool(state.doubts)
+    is_misaligned = state.is_misaligned
     state = replace(state, doubts=(*bracket.damaged, *completed.doubts, *state.doubts))
     checked_bracket = state.bracket
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
@@ -209,8 +209,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
             is_aligned=not is_misaligned or options.times == "estimate",
         )
         is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
+        has_warning = refined.doubts != state.doubts
         # Notes on times that stay are news only to those who asked for an estimate.
-        if is_changed or is_requested:
+        if is_changed or is_requested or has_warning:
             state = refined
     if options.times != "stated":
         state = replace(state, stage="times")

@@ -15,7 +15,7 @@ from hdrlab.align import light, mtb
 from hdrlab.core import arrays, colour
 from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.diagnostics import exposure_times, plausibility
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.doubts import MARGIN, warning_text
 from hdrlab.diagnostics.exposure_times import Estimate
 from hdrlab.errors import InputError
 from hdrlab.pipeline import recovery
@@ -193,18 +193,20 @@ def refine_times(
     Corrections that are larger than the rounding of stated times are a note. Smaller ones are a
     detail, unless the user requested an estimate, and so are corrections of estimates. Where the
     stated times make a worthless map, and corrections do not help, relative times replace them,
-    with a warning. `stated_spread` is the spread that the stated times leave in held-out pixels.
+    with a warning. Close to this limit the times stay, also with a warning. `stated_spread`
+    is the spread that the stated times leave in held-out pixels.
     Photos that are not aligned do not correct any times.
     """
     corrected = correct_times(state.bracket, response, stated_spread)
     # A warning about relative times has been given, and there are no stated ones to differ from.
     doubts = exposure_times.doubts(corrected.estimate) if has_stated_times else ()
     relative: CorrectedTimes | None = None
-    if corrected.spread > MIN_WORTHLESS_STOPS:
+    if corrected.spread > MIN_WORTHLESS_STOPS / MARGIN:
         rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
         relative_times = estimate_relative_times(state.bracket).times
         relative = correct_times(replace(rising.bracket, times=relative_times), response)
-        if relative.spread < MIN_WORTHLESS_STOPS / 2:
+        max_spread = MIN_WORTHLESS_STOPS / 2
+        if corrected.spread > MIN_WORTHLESS_STOPS and relative.spread < max_spread:
             # relative times do not tell how bright the scene was
             unscaled = replace(
                 rising.bracket,
@@ -216,6 +218,13 @@ def refine_times(
             corrected = relative
             has_stated_times = False
             doubts = (_describe_replaced_times(stated_spread, relative_times),)
+        elif (
+            has_stated_times
+            and np.isfinite(corrected.spread)
+            and relative.spread < MARGIN * max_spread
+        ):
+            text = warning_text("maybe_replaced", stops=corrected.spread, relative=relative.spread)
+            doubts = (*doubts, text)
     if not is_aligned and corrected is not relative:
         return state
     estimate = corrected.estimate

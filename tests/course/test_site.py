@@ -621,6 +621,8 @@ UNEXPLAINED = {
     "replaced_immeasurable",
     "kept_times_advice",
     "parts_advice",
+    "photo_parts_follows",
+    "instead",
     "dark_parts_advice",
     "widespread_advice",
 }

@@ -7,7 +7,7 @@ import pytest
 
 from hdrlab.diagnostics import causes
 from hdrlab.diagnostics.causes import CAUSES, Evidence, find_causes
-from hdrlab.diagnostics.contradictions import Contradictions
+from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions
 from hdrlab.diagnostics.doubts import SENTENCES, warning_text
 
 STATISTICS = tuple(field.name for field in fields(Evidence))
@@ -139,3 +139,16 @@ def test_moving_things_and_flickering_lamps_are_told_apart_or_named_together():
     assert not causes.is_moving(0.02, 0.2)
     assert not causes.is_moving(0.02, 0.056)
     assert not causes.is_moving(0.02, 0.054)
+
+
+def test_photos_that_are_about_as_likely_to_have_the_wrong_time_are_named_too():
+    images = np.random.default_rng(0).integers(20, 200, (4, 60, 90), np.uint8)
+    assert find_contradictions(images, [1, 2, 4, 8]).other_stops.size in (0, 4)
+    found = Contradictions(
+        stops=np.array([0, 0, 1.0, 1.0]),
+        other_stops=np.array([-1.0, -1.0, 0, 0]),
+        regions=np.zeros(3),
+    )
+    text = causes.warn_of_contradictions(found, "abcd")
+    assert "c by +1.00, d by +1.00" in text
+    assert "a by -1.00, b by -1.00" in text

@@ -193,3 +193,21 @@ def test_between_flicker_and_wrong_times_there_is_a_band_without_a_decision(stop
     )
     assert "b by +" in text
     assert ("lamps flicker" in text) == says_flicker
+
+
+def test_bands_of_rows_that_columns_show_nearly_as_much_never_appear_all_at_once():
+    """A jump of the measure would make flicker of nothing where a computer rounds differently."""
+    times = np.array([0.25, 0.5, 1.0])
+    y, x = np.indices(WALL.shape)
+    measured = []
+    for ratio in np.linspace(1.8, 3.2, 40):
+        images = []
+        for j, time in enumerate(times):
+            rows = 0.3 * np.sin(2 * np.pi * (3 * y / WALL.shape[0] + j / 3))
+            columns = 0.3 / ratio * np.sin(2 * np.pi * (3 * x / WALL.shape[1] + j / 3))
+            light = np.log(WALL * time * (1 + rows) * (1 + columns))
+            images.append(np.interp(light, G, np.arange(256)).round().astype(np.uint8))
+        measured.append(motion.measure_motion(np.stack(images), times, G, W).band_stops)
+    assert measured[0] == 0
+    assert measured[-1] > 3 * motion.MIN_BAND_STOPS
+    assert np.diff(measured).max() < 0.2 * measured[-1]

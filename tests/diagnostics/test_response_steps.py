@@ -62,3 +62,13 @@ def test_the_normal_equations_agree_with_lstsq_on_one_equation_per_patch():
     trusted = np.unique([V.a, V.b])
     assert np.abs(found.x - Q @ solution[256:]).max() < 1e-5
     assert np.abs((found.g[0] - solution[:256])[trusted]).max() < 1e-3
+
+
+def test_two_lines_that_explain_the_errors_of_times_equally_well_are_both_listed():
+    """By the first and the third time, the other two are wrong; or the other way round."""
+    B = np.arange(4.0)
+    lines = response_steps.list_trends(np.array([-2.0, -2.0, -1.0, 1.0]), B, margin=1.1)
+    assert any(np.allclose(line, [0, -0.5, 0, 1.5]) for line in lines)
+    assert any(np.allclose(line, [1.5, 0, -0.5, 0]) for line in lines)
+    (alone,) = response_steps.list_trends(np.array([0.0, 0.0, 0.0, 1.0]), B, margin=1.1)[:1]
+    assert np.allclose(alone, [0, 0, 0, 1])

@@ -177,3 +177,15 @@ def test_a_warning_about_a_part_names_the_maps_to_compare_with_if_there_are_any(
     tile = tones.PartError(kind="tile", index=3, channel=1, stops=0.7, is_between_photos=False)
     assert "--ghosts none" in tones.warn_of_parts([tile], "ab", alternatives=["--ghosts none"])
     assert "compare" not in tones.warn_of_parts([tile], "ab")
+
+
+@pytest.mark.parametrize(("of_map", "follows"), [(0.1, True), (0.3, False), (0.49, False)])
+def test_the_map_is_said_to_follow_a_photo_only_where_it_clearly_does(of_map, follows):
+    """From 0.5 on, the warning says that the map contradicts this photo."""
+    parts = [
+        tones.PartError(kind="image", index=0, channel=0, stops=of_map),
+        tones.PartError(kind="image", index=0, channel=0, stops=0.7, is_between_photos=True),
+    ]
+    text = tones.warn_of_parts(parts, ["a", "b"])
+    assert "two photos contradict each other by 0.70 stops" in text
+    assert ("the map follows" in text) == follows

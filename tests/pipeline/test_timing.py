@@ -9,7 +9,7 @@ from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 from hdrlab.errors import InputError
-from hdrlab.pipeline import registration, stages
+from hdrlab.pipeline import recovery, registration, stages, timing
 from hdrlab.pipeline.timing import (
     complete_times,
     estimate_relative_times,
@@ -151,7 +151,8 @@ def mistaken():
 
 def test_misaligned_photos_correct_no_times_and_report_no_contradictions(mistaken, monkeypatch):
     def lie_apart(*given, **named):
-        return replace(align_bracket(*given, **named), doubts=("a and b could not be aligned",))
+        aligned = align_bracket(*given, **named)
+        return replace(aligned, doubts=("a and b could not be aligned",), is_misaligned=True)
 
     align_bracket = registration.align_bracket
     assert len(pipeline.assemble(mistaken, align="none").doubts) == 2
@@ -167,3 +168,20 @@ def test_times_that_leave_nothing_to_compare_are_reported_without_a_number(mista
     )
     (said,) = refine_times(state, "auto", np.inf).doubts
     assert "inf" not in said and "relative exposure times" in said
+
+
+@pytest.mark.parametrize(("factor", "is_replaced"), [(0.9, True), (1.05, False)])
+def test_close_to_the_limit_of_a_replacement_the_stated_times_stay_with_a_warning(
+    factor, is_replaced, monkeypatch
+):
+    """So the verdict on the times is never the opposite on another computer."""
+    taken = replace(scenes.photographs((320, 240)), times=1 / np.array([1000, 120, 60, 15, 8, 4]))
+    (state, *_) = pipeline.assemble_steps(taken, align="none", times="stated")
+    spread = recovery.choose_response("auto", state.bracket).spread
+    corrected = timing.correct_times(state.bracket, "auto", spread)
+    monkeypatch.setattr(timing, "MIN_WORTHLESS_STOPS", factor * corrected.spread)
+    refined = refine_times(state, "auto", spread)
+    assert refined.bracket.has_relative_times == is_replaced
+    text = " ".join(refined.doubts)
+    assert "the stated times contradict the pixels" in text
+    assert ("the pixels do not show which" in text) == (not is_replaced)
