@@ -30,9 +30,9 @@ from hdrlab.errors import HdrlabError
 # the real brackets, and the stops between photos that state no times
 REAL = {"window": None, "frobisher": None, "tripod_phone": None, "mertens_house": 3.0}
 # pixels: of larger photos every second, third ... is taken
-MAX_SIDE = 600
+MAX_SIDE = 400
 # simulated brackets of each ill
-SIMULATED_COUNT = 2
+SIMULATED_COUNT = 1
 
 
 @dataclass(frozen=True)
