@@ -4,7 +4,8 @@
 
 Each program gets the same JPEG files with their times in EXIF and makes a radiance map with its
 defaults: the four embedded scenes, three responses and two levels of noise, 24 brackets in all. The
-camera stands on a tripod, because not every program aligns photos.
+camera stands on a tripod, because not every program aligns photos. In half of the brackets, the
+camera has a color matrix, see `color_camera`: the name of such a bracket ends with `-matrix`.
 
 Errors are those of the pixels that some photo shows between LOWEST_LEVEL and HIGHEST_LEVEL in every
 channel, after one factor for each channel was removed. A pixel without a positive value counts as
@@ -35,7 +36,7 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import ExifTags, Image
 from PIL.TiffImagePlugin import IFDRational
 
-from benchmarks import peer_maps, peers
+from benchmarks import color_camera, peer_maps, peers
 from benchmarks.experiments import Experiment, at_most, listed, one_thread
 from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Usage
@@ -51,6 +52,9 @@ RESPONSES = ("film", "srgb", "gamma")
 # Full well and read noise in electrons: a large sensor, and a small one at a high ISO.
 SENSORS = ((20_000.0, 5.0), (3_000.0, 12.0))
 BRACKETS = tuple(itertools.product(SCENES, RESPONSES, SENSORS))
+# Brackets with an odd sum of the places of scene, response and sensor are taken with this matrix, so
+# that each scene, response and sensor occurs with and without it.
+COLOR_MATRIX = color_camera.CANON_5D_MARK_3
 FRAME_COUNT = 5
 STEP_STOPS = 2.0
 JPEG_QUALITY = 95
@@ -174,13 +178,23 @@ def simulate(
         E, FRAME_COUNT, stops=STEP_STOPS, middle=0.1 * 2 ** rng.uniform(-0.5, 0.5)
     )
     model = camera.Camera(response=response, full_well=full_well, read_noise=read_noise)
-    taken = camera.shoot(E, times, model, rng=rng)
     name = f"{scene}-{response}-{full_well:g}"
+    if has_color_matrix(scene, response, sensor):
+        taken = color_camera.shoot(E, times, model, COLOR_MATRIX, rng=rng)
+        name += "-matrix"
+    else:
+        taken = camera.shoot(E, times, model, rng=rng)
     photos = folder / name
     photos.mkdir(exist_ok=True)
     files = write_photos(photos, taken)
     decoded = np.stack([np.asarray(Image.open(file)) for file in files])
     return SimulatedBracket(name, files, taken.times, decoded, E)
+
+
+def has_color_matrix(scene: str, response: str, sensor: tuple[float, float]) -> bool:
+    """Return whether the camera of a bracket has a color matrix."""
+    places = SCENES.index(scene) + RESPONSES.index(response) + SENSORS.index(sensor)
+    return places % 2 == 1
 
 
 def write_photos(folder: Path, taken: Bracket) -> list[Path]:

@@ -15,6 +15,10 @@ be right.
 An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs
 no word.
 
+`verdicts-borders` prints the dead bands of all verdicts, and looks for borders where hdrlab claims the
+opposite on the other side. `verdicts-machines` compares the verdicts on the same photos with other
+instruction sets, numbers of threads and memory layouts.
+
 Three rows miss their hold, of 12 brackets each:
 curve     5 of 5 costly ones are missed, and will be: a camera of another response, under times that differ
           by a twentieth of a stop or less, takes the same photographs. The maps predict their
@@ -34,7 +38,7 @@ import numpy as np
 
 from benchmarks.experiments import Experiment, along, at_most
 from benchmarks.peers import opencv
-from benchmarks.verdicts import brackets, ills
+from benchmarks.verdicts import borders, brackets, ills, machines
 from hdrlab import pipeline
 from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.bracket import Bracket
@@ -151,6 +155,18 @@ ROWS = (
         sound,
         (at_most("false alarms", 2),),
         has_seed=True,
+    ),
+    Experiment(
+        "verdicts-borders",
+        "borders between two verdicts, and verdicts that are the opposite within a millionth",
+        borders.try_borders,
+        (at_most("opposite verdicts", 0),),
+    ),
+    Experiment(
+        "verdicts-machines",
+        "brackets of which another machine or memory layout says something else",
+        machines.compare,
+        (at_most("opposite verdicts", 0),),
     ),
     *(
         Experiment(
