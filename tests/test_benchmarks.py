@@ -13,7 +13,15 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
-from benchmarks import __main__ as command, brackets, experiments, measure, peers, table
+from benchmarks import (
+    __main__ as command,
+    brackets,
+    color_camera,
+    experiments,
+    measure,
+    peers,
+    table,
+)
 from benchmarks.align import brackets as align_brackets, who
 from benchmarks.experiments import Experiment, Skipped, at_least, at_most, near
 from benchmarks.rows import (
@@ -29,6 +37,7 @@ from benchmarks.rows import (
     smaller,
     within,
 )
+from hdrlab.capture import camera
 from hdrlab.core.filters import warp
 
 RESULTS = {
@@ -248,6 +257,35 @@ def test_the_seed_reaches_the_rows_that_draw_at_random(monkeypatch, capsys):
     monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
     assert command.main(["papers", "--seed", "7"]) == 0
     assert seeds == [7]
+
+
+def test_a_color_matrix_changes_no_color_that_the_camera_does_not_clip():
+    rng = np.random.default_rng(0)
+    E = rng.uniform(0.05, 0.6, (20, 30, 3)).astype(np.float32)
+    model = camera.Camera(response="srgb")
+    matrix = color_camera.CANON_5D_MARK_3
+    with_matrix = color_camera.shoot(E, [0.5, 1.0], model, matrix).images.astype(int)
+    without = camera.shoot(E, [0.5, 1.0], model).images
+    assert np.abs(with_matrix - without).max() <= 1
+
+
+def test_a_channel_that_the_camera_clips_makes_the_other_channels_wrong_too():
+    """Only green is too bright for the camera, and red and blue of the photo change with it."""
+    model = camera.Camera(response="linear")
+    matrix = color_camera.CANON_5D_MARK_3
+    E = np.array([[[0.3, 1.4, 0.3]]], np.float32)
+    red, green, blue = color_camera.shoot(E, [1.0], model, matrix).images[0, 0, 0].astype(int)
+    assert green == 255
+    for channel in (red, blue):
+        assert 0 < channel < 255
+        assert abs(channel - 0.3 * 255) > 10
+
+
+def test_half_of_the_brackets_have_a_color_matrix_with_each_scene_response_and_sensor():
+    with_matrix = [one for one in brackets.BRACKETS if brackets.has_color_matrix(*one)]
+    assert 2 * len(with_matrix) == len(brackets.BRACKETS)
+    for place, choices in enumerate((brackets.SCENES, brackets.RESPONSES, brackets.SENSORS)):
+        assert {one[place] for one in with_matrix} == set(choices)
 
 
 @pytest.fixture

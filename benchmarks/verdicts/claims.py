@@ -10,6 +10,7 @@ from hdrlab.pipeline.assembly import Assembly
 PHRASES = {
     "could not be aligned": "alignment",
     "are probably misaligned": "alignment",
+    "may be misaligned": "alignment",
     "has a different white balance": "white_balance",
     "the corners get brighter or darker": "corners",
     "vignetting changed with the aperture": "corners",

@@ -1,0 +1,64 @@
+"""The rows that look for opposite verdicts: their judge, their table, and one border."""
+
+import numpy as np
+import pytest
+
+from benchmarks.verdicts import bands, borders, claims
+from hdrlab.diagnostics.doubts import SENTENCES
+from hdrlab.pipeline.assembly import Assembly
+from hdrlab.radiance.deghosting import ghosts
+
+
+def assembly(*doubts, notes=()):
+    return Assembly(stage="compare", bracket=None, offsets=None, doubts=doubts, notes=notes)
+
+
+def test_two_verdicts_contradict_each_other_only_if_they_share_no_cause():
+    flicker = claims.blamed_causes(assembly("lamps flicker: the light changed by 0.10 stops"))
+    either = claims.blamed_causes(
+        assembly(
+            "either lamps flicker or exposure times are wrong, and the pixels do not show which"
+        )
+    )
+    moved = claims.blamed_causes(assembly(notes=("something moved in 2 regions",)))
+    nothing = claims.blamed_causes(assembly(notes=("aligned",)))
+    assert either == {"flicker", "times"}
+    assert claims.contradict(flicker, moved)
+    assert not claims.contradict(flicker, either)
+    assert not claims.contradict(flicker, nothing)
+
+
+@pytest.mark.parametrize("phrase", claims.PHRASES)
+def test_each_phrase_that_blames_a_cause_is_a_part_of_a_warning_or_of_a_note(phrase):
+    texts = [*SENTENCES.values(), ghosts.note.__code__.co_consts.__repr__()]
+    causes = " or ".join(text for name, text in SENTENCES.items() if name.endswith("_cause"))
+    texts.append(f"{causes}, and the pixels do not show which")
+    assert any(phrase.removesuffix(", and") in text for text in texts)
+
+
+def test_the_table_of_bands_lists_ends_around_their_limits(capsys):
+    bands.print_bands()
+    printed = capsys.readouterr().out
+    for band in bands.BANDS:
+        assert band.low <= band.limit <= band.high
+        assert band.verdict in printed
+
+
+@pytest.mark.papers
+def test_on_both_sides_of_the_border_of_a_white_balance_no_verdict_is_the_opposite(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(borders, "BISECTIONS", 3)
+    monkeypatch.setattr(borders, "REPETITIONS", 1)
+    names = [series.name for series in borders.SERIES]
+    results = borders.try_series((names.index("white balance"), tmp_path))
+    assert results
+    assert any("white_balance" in result.above for result in results)
+    assert sum(result.opposites for result in results) == 0
+
+
+def test_noise_of_a_millionth_changes_the_light_by_a_millionth():
+    ill = borders.add_noise(borders.state_wrong_time(1.1), 0)
+    E = np.ones((40, 60, 3), np.float32)
+    changed = ill.light(None, 0, np.random.default_rng(0), E)
+    assert 0 < np.abs(changed - 1).max() < 1e-5
