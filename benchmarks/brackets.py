@@ -14,6 +14,7 @@ MISSING_STOPS.
 EV         size of the error of log2 E, stops: median, and 95th percentile
 dark       median size of the error in the darkest twentieth of these pixels, stops
 color      95th percentile of the size of the error of log2 R/G and log2 B/G, stops
+tint       the same of the means over 8 x 8 pixels, in which noise averages out and a wrong color stays
 CPU        processor time of the whole command, s
 memory     peak memory of the largest process of the command, MB
 
@@ -67,7 +68,9 @@ DARK_FRACTION = 0.05
 MISSING_STOPS = 10.0
 LUMINANCE_HDR = "Luminance HDR"
 AGAINST_BEST = "hdrlab / best of the others"
-FIGURES = "EV median, EV 95 %, dark, color, CPU s, memory MB"
+FIGURES = "EV median, EV 95 %, dark, color, tint, CPU s, memory MB"
+# side of the blocks of pixels over which the tint is averaged
+TINT_BLOCK_SIDE = 8
 Float = NDArray[np.float64]
 Command = Callable[[list[Path], Path], list[str]]
 Figures = tuple[float, ...]
@@ -92,6 +95,7 @@ class MapErrors:
     p95: float
     dark: float
     color: float
+    tint: float
 
 
 @dataclass(frozen=True)
@@ -292,7 +296,7 @@ def run_program(
         return usage, measure_errors(read_map(target), simulated)
     except (RuntimeError, OSError, ValueError) as error:
         print(f"  {name}, {simulated.name}: no map, {str(error)[-300:]}", flush=True)
-        return Usage(np.nan, np.nan, np.nan), MapErrors(*[MISSING_STOPS] * 4)
+        return Usage(np.nan, np.nan, np.nan), MapErrors(*[MISSING_STOPS] * 5)
 
 
 def read_map(path: Path) -> Float:
@@ -323,10 +327,34 @@ def measure_errors(E: Float, simulated: SimulatedBracket) -> MapErrors:
         p95=float(np.quantile(sizes, 0.95)),
         dark=float(np.median(sizes[is_dark])),
         color=float(np.quantile(color_sizes, 0.95)),
+        tint=measure_tint(errors, is_measured),
     )
 
 
-HOLD = at_most(AGAINST_BEST, 1, 1, 1, 1, np.inf, np.inf)
+def measure_tint(errors: Float, is_measured: NDArray[np.bool_]) -> float:
+    """Return the 95th percentile of the color errors of blocks of pixels, stops.
+
+    errors : (N, 3), log2 of the map over the truth at the N measured pixels; NaN where it is missing
+    is_measured : (H, W)
+    """
+    height, width = (n // TINT_BLOCK_SIDE * TINT_BLOCK_SIDE for n in is_measured.shape)
+    shape = (height // TINT_BLOCK_SIDE, TINT_BLOCK_SIDE, width // TINT_BLOCK_SIDE, TINT_BLOCK_SIDE)
+    differences = np.zeros((*is_measured.shape, 2))
+    counts = np.zeros(is_measured.shape)
+    color_errors = errors[:, [0, 2]] - errors[:, [1]]
+    is_known = np.isfinite(color_errors).all(axis=1)
+    differences[is_measured] = np.where(is_known[:, None], color_errors, 0)
+    counts[is_measured] = is_known
+    sums = differences[:height, :width].reshape(*shape, 2).sum(axis=(1, 3))
+    block_counts = counts[:height, :width].reshape(shape).sum(axis=(1, 3))
+    has_half = np.asarray(block_counts >= TINT_BLOCK_SIDE**2 / 2)
+    if not has_half.any():
+        return MISSING_STOPS
+    means = np.abs(sums[has_half] / block_counts[has_half][:, None])
+    return float(np.quantile(means, 0.95))
+
+
+HOLD = at_most(AGAINST_BEST, 1, 1, 1, 1, 1, np.inf, np.inf)
 ROWS = (
     Experiment(
         "brackets-peers",

@@ -309,6 +309,18 @@ def test_a_compressed_map_has_errors_and_a_missing_pixel_counts_as_ten_stops(sim
     assert brackets.measure_errors(E, simulated).p95 == brackets.MISSING_STOPS
 
 
+def test_noise_averages_out_of_the_tint_of_a_map_and_a_wrong_color_does_not(simulated):
+    rng = np.random.default_rng(1)
+    E = simulated.E.astype(float)
+    noisy = E * 2 ** (0.3 * rng.standard_normal(E.shape))
+    errors = brackets.measure_errors(noisy, simulated)
+    assert errors.color > 0.6
+    assert errors.tint < 0.2
+    tinted = E.copy()
+    tinted[:, :40, 0] *= 2**0.6
+    assert brackets.measure_errors(tinted, simulated).tint > 0.25
+
+
 def test_photos_of_a_simulated_bracket_state_their_times(simulated):
     read = [float(brackets.peer_maps.read_time(str(file))) for file in simulated.files]
     np.testing.assert_allclose(read, simulated.times, rtol=1e-4)
@@ -328,13 +340,13 @@ def test_each_bracket_is_printed_when_it_is_measured_and_ctrl_c_prints_their_med
         printed.append(capsys.readouterr().out)
         if len(printed) == 4:
             raise KeyboardInterrupt
-        return Usage(1, 50, 3), brackets.MapErrors(0.25, 0.5, 0.125, 1)
+        return Usage(1, 50, 3), brackets.MapErrors(0.25, 0.5, 0.125, 1, 0.0625)
 
     monkeypatch.setattr(brackets, "run_program", measure)
     with pytest.raises(KeyboardInterrupt):
         brackets.compare(tmp_path, places=("street",))
     assert "street-film-20000" in printed[0] and "other" in printed[0]
-    figures = "0.25, 0.5, 0.125, 1, 3, 50"
+    figures = "0.25, 0.5, 0.125, 1, 0.0625, 3, 50"
     assert [text.count(figures) for text in printed] == [0, 1, 1, 1]
     summary = capsys.readouterr().out
     assert "Complete brackets: 1" in summary and summary.count(figures) == 4
