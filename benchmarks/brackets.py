@@ -327,7 +327,7 @@ def measure_errors(E: Float, simulated: SimulatedBracket) -> MapErrors:
         p95=float(np.quantile(sizes, 0.95)),
         dark=float(np.median(sizes[is_dark])),
         color=float(np.quantile(color_sizes, 0.95)),
-        tint=measure_tint(errors, is_measured),
+        tint=measure_tint(errors, np.asarray(is_measured)),
     )
 
 
@@ -342,15 +342,15 @@ def measure_tint(errors: Float, is_measured: NDArray[np.bool_]) -> float:
     differences = np.zeros((*is_measured.shape, 2))
     counts = np.zeros(is_measured.shape)
     color_errors = errors[:, [0, 2]] - errors[:, [1]]
-    is_known = np.isfinite(color_errors).all(axis=1)
+    is_known = np.asarray(np.isfinite(color_errors).all(axis=1))
     differences[is_measured] = np.where(is_known[:, None], color_errors, 0)
     counts[is_measured] = is_known
     sums = differences[:height, :width].reshape(*shape, 2).sum(axis=(1, 3))
     block_counts = counts[:height, :width].reshape(shape).sum(axis=(1, 3))
-    has_half = np.asarray(block_counts >= TINT_BLOCK_SIDE**2 / 2)
-    if not has_half.any():
+    large = np.nonzero(block_counts >= TINT_BLOCK_SIDE**2 / 2)
+    if not len(large[0]):
         return MISSING_STOPS
-    means = np.abs(sums[has_half] / block_counts[has_half][:, None])
+    means = np.abs(sums[large] / block_counts[large][:, None])
     return float(np.quantile(means, 0.95))
 
 

@@ -1,9 +1,13 @@
 """The rows that look for opposite verdicts: their judge, their table, and one border."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from benchmarks.verdicts import bands, borders, claims
+from benchmarks.verdicts import bands, borders, claims, machines
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera
 from hdrlab.diagnostics.doubts import SENTENCES
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.deghosting import ghosts
@@ -62,3 +66,20 @@ def test_noise_of_a_millionth_changes_the_light_by_a_millionth():
     E = np.ones((40, 60, 3), np.float32)
     changed = ill.light(None, 0, np.random.default_rng(0), E)
     assert 0 < np.abs(changed - 1).max() < 1e-5
+
+
+@pytest.mark.papers
+@pytest.mark.parametrize("layout", ["F", "strided"])
+def test_the_verdict_and_the_map_are_the_same_in_other_memory_layouts(layout):
+    room = scenes.room((140, 210))
+    times = camera.times_around(room, 5, stops=1.5)
+    warm = camera.shoot(room * np.array([1.35, 1, 0.72], np.float32), times, rng=1).images[2]
+    taken = camera.shoot(room, times, rng=1)
+    images = taken.images.copy()
+    images[2] = warm
+    expected = pipeline.assemble(replace(taken, images=images))
+    found = pipeline.assemble(replace(taken, images=machines.lay_out(images, layout)))
+    assert expected.doubts
+    assert found.doubts == expected.doubts
+    assert found.notes == expected.notes
+    assert np.allclose(found.E, expected.E, rtol=1e-5)
