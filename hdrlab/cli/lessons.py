@@ -46,7 +46,8 @@ def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...
     """Open JupyterLab on your own copy of the notebooks.
 
     hdrlab copies the notebooks and assignments to the folder of --out, and opens the first
-    notebook. It never overwrites files in that folder. JupyterLab saves the state of the widgets,
+    notebook. It never overwrites files in that folder. A notebook of hdrlab runs when you open it
+    for the first time, if you have not changed its code. JupyterLab saves the state of the widgets,
     unless your own settings disable that. hdrlab passes JUPYTERLAB_OPTIONS on to JupyterLab.
     """
     from hdrlab.course import materials
@@ -62,7 +63,14 @@ def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...
     if own_folders:
         config_folders.append(own_folders)
     os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(config_folders)
-    place = [f"--notebook-dir={out}", f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"]
+    page_config = {"hdrlabCodeDigests": materials.code_digests()}
+    place = [
+        f"--notebook-dir={out}",
+        f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}",
+        f"--LabApp.workspaces_dir={materials.workspaces_folder(out)}",
+        f"--LabApp.extra_labextensions_path={materials.LAB_EXTENSIONS}",
+        f"--ServerApp.tornado_settings={dict(page_config_data=page_config)}",
+    ]
     if no_browser:
         place.append("--no-browser")
     LabApp.launch_instance([*place, *options])

@@ -1,12 +1,16 @@
 """Where notebooks and assignments are, in a package or a clone, and a reader's copy."""
 
+import hashlib
+import json
 from pathlib import Path
 
 from hdrlab.io import files
 
 COURSE = Path(__file__).parent
-# settings of JupyterLab: it saves the state of widgets, and shows no news
+# settings of JupyterLab (it saves the state of widgets, and shows no news), its first workspace, and
+# an extension that runs hdrlab's own notebooks when they are opened
 JUPYTER = COURSE / "jupyter"
+LAB_EXTENSIONS = JUPYTER / "labextensions"
 
 
 def folder(name: str) -> Path:
@@ -39,3 +43,29 @@ def copy_course(target: Path) -> list[Path]:
                 files.write(copy, notebook.read_bytes())
                 new.append(copy)
     return new
+
+
+def code_digests() -> list[str]:
+    """Return the SHA-256 digest of the code of each notebook; the extension of `hdrlab lab` compares them."""
+    digests = []
+    for notebook in sorted(folder("notebooks").glob("*.ipynb")):
+        cells = json.loads(notebook.read_text("utf-8"))["cells"]
+        sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        digests.append(hashlib.sha256("\0".join(sources).encode()).hexdigest())
+    return digests
+
+
+def workspaces_folder(target: Path) -> Path:
+    """Return the folder of JupyterLab's workspaces in the reader's copy of the course.
+
+    At first it has one workspace, which shows the table of contents. JupyterLab then stores there how
+    the reader arranges the window, apart from the workspaces of other projects.
+    """
+    from jupyterlab_server import WORKSPACE_EXTENSION, slugify
+
+    workspaces = target.resolve() / ".jupyter" / "workspaces"
+    workspace = workspaces / f"{slugify('default')}{WORKSPACE_EXTENSION}"
+    if not workspace.exists():
+        workspaces.mkdir(parents=True, exist_ok=True)
+        files.write(workspace, (JUPYTER / "workspace.json").read_bytes())
+    return workspaces

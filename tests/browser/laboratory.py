@@ -154,12 +154,22 @@ def chromium(*names: str) -> Iterator[Any]:
 
 
 @contextmanager
-def jupyterlab(home: Path) -> Iterator[Lab]:
-    """Start a JupyterLab on a copy of the notebooks, with all its folders in `home`, or raise Absent."""
+def jupyterlab(home: Path, *, by_hdrlab: bool = False) -> Iterator[Lab]:
+    """Start a JupyterLab on a copy of the notebooks, with all its folders in `home`, or raise Absent.
+
+    With `by_hdrlab`, the command `hdrlab lab` copies the notebooks and starts it, and it has
+    JupyterLab's own settings.
+    """
     if find_spec("jupyterlab") is None:
         raise Absent("jupyterlab is not installed")
-    folder = Path(shutil.copytree(ROOT / "notebooks", home / "notebooks"))
-    for name, text in SETTINGS.items():
+    if by_hdrlab:
+        folder = home / "course"
+        folder.mkdir()
+        settings = {}
+    else:
+        folder = Path(shutil.copytree(ROOT / "notebooks", home / "notebooks"))
+        settings = SETTINGS
+    for name, text in settings.items():
         file = home / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
@@ -168,7 +178,7 @@ def jupyterlab(home: Path) -> Iterator[Lab]:
         port = free.getsockname()[1]
     token = secrets.token_hex(16)
     server = subprocess.Popen(
-        _command(port, token, folder),
+        _command(port, token, folder, by_hdrlab=by_hdrlab),
         env=_environment(home),
         cwd=folder,
         stdout=subprocess.DEVNULL,
@@ -225,17 +235,18 @@ def changed_by(page: Any, widget: Any, move: Callable[[], object]) -> None:
     )
 
 
-def _command(port: int, token: str, folder: Path) -> list[str]:
+def _command(port: int, token: str, folder: Path, *, by_hdrlab: bool) -> list[str]:
     options = [
         "--no-browser",
         "--allow-root",
         f"--ServerApp.port={port}",
         "--ServerApp.port_retries=0",
-        f"--ServerApp.root_dir={folder}",
         f"--IdentityProvider.token={token}",
         "--LabApp.expose_app_in_browser=True",
     ]
-    return [sys.executable, "-m", "jupyterlab", *options]
+    if by_hdrlab:
+        return [sys.executable, "-m", "hdrlab", "lab", "-o", str(folder), "--", *options]
+    return [sys.executable, "-m", "jupyterlab", f"--ServerApp.root_dir={folder}", *options]
 
 
 def _environment(home: Path) -> dict[str, str]:

@@ -34,7 +34,8 @@ WIDGETS = "_widgets"  # folder of the exported widgets
 OWN_FOLDERS = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
 # sentences of a notebook that make no sense on a page, where nothing can be run
 SENTENCES_ON_RUNNING = re.compile(
-    r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |\s+You cannot break anything:.*?Enter\)\."
+    r"(?s)Run the cells from the top\. |`hdrlab lab` runs .*?read on\. "
+    r"|\s+You cannot break anything:.*?Enter\)\."
 )
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
 # what stands below the title of each notebook

@@ -177,7 +177,13 @@ function paperShape(areas) {
 
 const SMALL_IMAGE = 480; // pixels: an image that is less wide is enlarged
 const COLUMN_WIDTH = 640; // pixels of the page
-const MAX_IMAGE_HEIGHT = 75; // percent of the height of the window
+const MAX_IMAGE_HEIGHT = "75vh"; // of the window, where widgets.css sets no other limit
+
+// Show a canvas at this width in pixels of the page, but not higher than the window allows.
+function setDisplayWidth(canvas, width) {
+  const maxHeight = `var(--hdrlab-max-height, ${MAX_IMAGE_HEIGHT})`;
+  canvas.style.width = `min(${width}px, calc(${maxHeight} * ${canvas.width / canvas.height}))`;
+}
 
 // Append a canvas that shows one image after another. `areas` are the maps in a plot, whose colors
 // do not change on a dark page.
@@ -196,9 +202,7 @@ function addPicture(parent, areas = []) {
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
     // Enlarge a small image to the width of the column, but not beyond the height of the window.
-    if (width < SMALL_IMAGE) {
-      canvas.style.width = `min(${COLUMN_WIDTH}px, ${(MAX_IMAGE_HEIGHT * width) / height}vh)`;
-    }
+    if (width < SMALL_IMAGE) setDisplayWidth(canvas, COLUMN_WIDTH);
     const context = canvas.getContext("2d");
     if (image instanceof ImageData) context.putImageData(image, 0, 0);
     else context.drawImage(image, 0, 0);

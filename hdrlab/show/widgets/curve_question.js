@@ -181,7 +181,7 @@ function createCurveQuestion(root, model) {
   const aspect = pageWidth < SMALL_IMAGE ? 0.8 : 0.6;
   canvas.width = CANVAS_DENSITY * pageWidth;
   canvas.height = Math.round(CANVAS_DENSITY * pageWidth * aspect);
-  canvas.style.width = `${pageWidth}px`;
+  setDisplayWidth(canvas, pageWidth);
   canvas.toggleAttribute("data-ink", true);
   addElement(root, "div", { className: "hdrlab-axis", textContent: `→ ${xName}` });
   const showStatus = addStatusLine(root);

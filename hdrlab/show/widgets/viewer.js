@@ -11,7 +11,6 @@
 //   unit      what the values are, such as "radiance"
 
 const MAX_ZOOM = 32;
-const MAX_HEIGHT = 80; // percent of the height of the window, so that a tall image fits
 const MIN_CANVAS_WIDTH = 960; // pixels: a smaller image is enlarged
 const PAN_STEPS = 64; // steps of the arrow keys across the visible part of a large image
 const FAR_STEP = 8; // steps of an arrow key with Shift
@@ -87,9 +86,7 @@ async function createViewer(root, model, options) {
   const enlargement = Math.max(1, Math.floor(MIN_CANVAS_WIDTH / width));
   canvas.width = width * enlargement;
   canvas.height = height * enlargement;
-  if (width < MIN_CANVAS_WIDTH) {
-    canvas.style.width = `min(${MIN_CANVAS_WIDTH}px, ${(MAX_HEIGHT * width) / height}vh)`;
-  }
+  setDisplayWidth(canvas, Math.max(width, MIN_CANVAS_WIDTH));
   const controls = addElement(root, "div", { className: "hdrlab-controls" });
   const slider = addSlider(controls, "zoom", 1 + Math.log2(MAX_ZOOM));
 

@@ -47,7 +47,7 @@ async function render({ model, el }) {
     compose,
     startDrag,
   });
-  names.style.width = view.canvas.style.width || `${view.canvas.width}px`;
+  names.style.width = view.canvas.style.width;
   const slider = addSlider(view.controls, "edge", 101);
   view.controls.prepend(slider.input.parentElement);
 
