@@ -63,13 +63,10 @@ def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...
     if own_folders:
         config_folders.append(own_folders)
     os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(config_folders)
-    page_config = {"hdrlabCodeDigests": materials.code_digests()}
     place = [
         f"--notebook-dir={out}",
         f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}",
         f"--LabApp.workspaces_dir={materials.workspaces_folder(out)}",
-        f"--LabApp.extra_labextensions_path={materials.LAB_EXTENSIONS}",
-        f"--ServerApp.tornado_settings={dict(page_config_data=page_config)}",
     ]
     if no_browser:
         place.append("--no-browser")

@@ -7,8 +7,8 @@ from pathlib import Path
 from hdrlab.io import files
 
 COURSE = Path(__file__).parent
-# settings of JupyterLab (it saves the state of widgets, and shows no news), its first workspace, and
-# an extension that runs hdrlab's own notebooks when they are opened
+# configuration of a Jupyter server: JupyterLab saves the state of widgets and shows no news, and an
+# extension runs hdrlab's own notebooks when they are opened
 JUPYTER = COURSE / "jupyter"
 LAB_EXTENSIONS = JUPYTER / "labextensions"
 

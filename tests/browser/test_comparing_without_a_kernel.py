@@ -170,7 +170,7 @@ def test_a_small_picture_is_shown_as_wide_as_a_column(open_, width, shown):
 def test_an_upright_picture_is_enlarged_no_further_than_the_screen_is_high(open_):
     picture = np.full((500, 375), 100, np.uint8)
     page = open_(widgets.wipe(picture, picture, alt="Gray"))
-    assert page.locator("canvas").bounding_box()["height"] == pytest.approx(0.8 * 900, abs=2)
+    assert page.locator("canvas").bounding_box()["height"] == pytest.approx(0.75 * 900, abs=2)
 
 
 def test_the_wheel_zooms_after_a_click_and_scrolls_the_page_before_it(wiper):
