@@ -36,7 +36,9 @@ def typed(path):
     ]
     lines += re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S))
     parts = [part for line in lines for part in re.split(r"&&|#", line)]
-    found = [re.match(r"\s*(?:[$] )?(?:env/bin/)?hdrlab (.+)", part) for part in parts]
+    found = [
+        re.match(r"\s*(?:[$] )?(?:env/bin/|uvx --from \. )?hdrlab (.+)", part) for part in parts
+    ]
     return [shlex.split(one[1].split(" -- ")[0].replace("...", "")) for one in found if one]
 
 

@@ -36,6 +36,7 @@ COURSE_PARTS = (
     "limits",
     "scratch",
     "materials",
+    "jupyter",
     "source_code",
     "variants",
     "due_dates",
@@ -80,7 +81,7 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),
     "IPython": {"show", "course"},
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
-    "jupyterlab": {"cli"},
+    **dict.fromkeys(["jupyterlab", "jupyterlab_server"], {"cli"}),
     **dict.fromkeys(
         ["nbformat", "nbclient", "sphinx", "numpydoc", "docutils", "ziamath", "latex2mathml"],
         {"course"},

@@ -66,7 +66,7 @@ def lab(*, out: Path, copy_only: bool, no_browser: bool, options: tuple[str, ...
     place = [
         f"--notebook-dir={out}",
         f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}",
-        f"--LabApp.workspaces_dir={materials.workspaces_folder(out)}",
+        f"--LabApp.workspaces_dir={_workspaces_folder(out)}",
     ]
     if no_browser:
         place.append("--no-browser")
@@ -167,6 +167,25 @@ def site(*, out: Path, notebooks: tuple[Path, ...], jobs: int, address: str, lit
     fresh = sum(notebook.fresh for notebook in executed)
     counts = f"{made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks"
     click.echo(f"{made.front}: {counts}; run now: {fresh}")
+
+
+def _workspaces_folder(course: Path) -> Path:
+    """Return the folder of JupyterLab's workspaces in the reader's copy of the course.
+
+    At first it has one workspace, which shows the table of contents. JupyterLab then stores there how
+    the reader arranges the window, apart from the workspaces of other projects.
+    """
+    from jupyterlab_server import WORKSPACE_EXTENSION, slugify
+
+    from hdrlab.course import materials
+    from hdrlab.io import files
+
+    folder = course.resolve() / ".jupyter" / "workspaces"
+    workspace = folder / f"{slugify('default')}{WORKSPACE_EXTENSION}"
+    if not workspace.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        files.write(workspace, materials.WORKSPACE.read_bytes())
+    return folder
 
 
 def _commands_page() -> str:

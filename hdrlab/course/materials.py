@@ -11,6 +11,8 @@ COURSE = Path(__file__).parent
 # extension runs hdrlab's own notebooks when they are opened
 JUPYTER = COURSE / "jupyter"
 LAB_EXTENSIONS = JUPYTER / "labextensions"
+# a workspace of JupyterLab that shows the table of contents
+WORKSPACE = JUPYTER / "workspace.json"
 
 
 def folder(name: str) -> Path:
@@ -53,19 +55,3 @@ def code_digests() -> list[str]:
         sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
         digests.append(hashlib.sha256("\0".join(sources).encode()).hexdigest())
     return digests
-
-
-def workspaces_folder(target: Path) -> Path:
-    """Return the folder of JupyterLab's workspaces in the reader's copy of the course.
-
-    At first it has one workspace, which shows the table of contents. JupyterLab then stores there how
-    the reader arranges the window, apart from the workspaces of other projects.
-    """
-    from jupyterlab_server import WORKSPACE_EXTENSION, slugify
-
-    workspaces = target.resolve() / ".jupyter" / "workspaces"
-    workspace = workspaces / f"{slugify('default')}{WORKSPACE_EXTENSION}"
-    if not workspace.exists():
-        workspaces.mkdir(parents=True, exist_ok=True)
-        files.write(workspace, (JUPYTER / "workspace.json").read_bytes())
-    return workspaces
