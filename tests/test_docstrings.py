@@ -56,6 +56,7 @@ def test_examples_run(name, monkeypatch, tmp_path):
 
 ALGORITHMS = ("align", "beyond", "capture", "core", "enhance", "radiance", "response", "tonemap")
 PARTS = {  # of something with examples
+    "hdrlab.beyond.burst",
     "hdrlab.core.filters",
     "hdrlab.radiance.deghosting",
 }
