@@ -8,7 +8,8 @@
 # along a simulated response, veiling glare, assorted pixels, coded exposure, several sensors behind
 # one lens, video, the space of response curves, joining blends of light, finding a chart, the Detail
 # Brush, curves and operators, contrast, focus and skin as measures of what matters in a photo, the
-# circle without vignetting, and a logarithm whose base changes. You write the core of each.
+# circle without vignetting, a logarithm whose base changes, and the merge of a burst. You write the
+# core of each.
 #
 # {choice}
 #
@@ -26,6 +27,7 @@
 # | $x$, $h$, $y$ | object, shutter, photo of the moving object | (n,), (m,), (n + m - 1,) |
 # | $H$, $\mathrm{sd}$ | principal components of response curves, and the spread along each | (K, n), (K,) |
 # | $L$, $L_{wa}$, $L_d$; $b$ | luminance, its log average, display luminance; bias | any shape |
+# | $T$, $F$, $D$; $A$ | tiles of a burst, their Fourier transforms, differences; shrinkage | (N, n, n) |
 # | $V$, $Q$ | powers of the brightness; quadratic form of the error | (l, d + 1), (d + 1, d + 1) |
 #
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what
@@ -995,6 +997,60 @@ mapped = [
 pictures.picture(
     colour.to_8bit(np.hstack(mapped)),
     alt="The room twice: with base 10, and with a bias of 0.75, where the middle tones are brighter",
+)
+
+# %% [markdown] about="merge_tile"
+# ## 29 · Merge a burst, frequency by frequency ({points})
+#
+# A phone takes a *burst*: $N$ equal, short photos, one right after the other. Each tile of $n \times n$
+# pixels is aligned with the first photo, the *reference frame*. The mean of the $N$ tiles has less noise,
+# but ghosts where something moved. [Hasinoff and others
+# (2016)](https://doi.org/10.1145/2980179.2980254) decide it for each spatial frequency of the tile.
+#
+# Let $F_z$ be the Fourier transform of tile $z$, with $z = 0$ for the reference. Its difference from the
+# reference is
+#
+# $$D_z = F_0 - F_z.$$
+#
+# If nothing moved, $D_z$ is only noise. A coefficient of the transform is a sum over $n^2$ pixels, and
+# two tiles contribute. So with the noise variance $\sigma^2$ = `variance` of a pixel, the mean of
+# $|D_z|^2$ is
+#
+# $$S = 2 n^2 \sigma^2.$$
+#
+# The *shrinkage* is a number from 0 to 1 for each frequency, near 0 for noise and near 1 for motion. With
+# the tuning constant $c$ = `tuning` it is
+#
+# $$A_z = \frac{|D_z|^2}{|D_z|^2 + c\,S}.$$
+#
+# The merged tile has the Fourier transform
+#
+# $$F = \frac1N \sum_{z=0}^{N-1} \bigl(F_z + A_z D_z\bigr).$$
+#
+# *Example*: $N = 2$ tiles of a single pixel, 3 and 1, with $\sigma^2 = 1$ and $c = 1$. Then $D_1 = 2$,
+# $S = 2$ and $A_1 = 4 / 6$. The merged pixel is $(3 + 1 + 2 \cdot 4 / 6) / 2 = 2.667$.
+#
+# (`T` contains the tiles, shape (N, n, n), the reference first; `variance` and `tuning` are numbers above
+# 0. Return the merged tile itself, shape (n, n), as real numbers.)
+
+# %% task="merge_tile"
+# Return the tile merged from the aligned tiles T of a burst, with the noise variance of a pixel.
+
+# %% about="merge_tile"
+rng = np.random.default_rng(0)
+still = 0.4 + 0.2 * np.sin(np.arange(16) / 2) * np.ones((16, 1))
+burst = still + 0.05 * rng.standard_normal((8, 16, 16))
+burst[4:, 4:12, 4:12] += 0.5  # something comes into the picture
+versions = {"reference": burst[0], "mean": burst.mean(axis=0)}
+versions["merged"] = merge_tile(burst, 0.05**2, tuning=12.0)
+for name, version in versions.items():
+    print(f"{name:9} error {np.sqrt(np.mean((version - still) ** 2)):.3f}")
+
+# %% about="merge_tile"
+row = np.clip(np.hstack(list(versions.values())), 0, 1)
+pictures.picture(
+    colour.to_8bit(row).repeat(12, axis=0).repeat(12, axis=1),
+    alt="The tile three times: with noise, with a ghost, and merged with less noise and no ghost",
 )
 
 # %% [markdown]

@@ -5,6 +5,7 @@ import pytest
 
 from hdrlab.align import cerman
 from hdrlab.beyond import assorted, flutter
+from hdrlab.beyond.burst import temporal_merge
 from hdrlab.calibration import wilburn
 from hdrlab.enhance import battiato, relight, skin
 from hdrlab.radiance import flare, scales
@@ -50,6 +51,10 @@ EXAMPLES = {
     "contrast": (battiato.contrast(np.full((4, 4), 100.0)), 1.2),
     "focus, with little noise": (battiato.focus(SPOT, noise=20), 32),
     "focus, with much noise": (battiato.focus(SPOT, noise=150), 16),
+    "merge_tile": (
+        temporal_merge.merge_tile(np.array([[[3.0]], [[1.0]]]), 1.0, tuning=1.0),
+        [[8 / 3]],
+    ),
     "find_by_locus": (skin.find_by_locus([[224, 172, 105], [60, 90, 200]]), [True, False]),
 }
 

@@ -47,7 +47,7 @@ def noise_variance(T0: Array, shot: float, read: float) -> Array:
     return np.asarray(shot * rms + read)
 
 
-def shrinkage(D: Array, variance: ArrayLike, tuning: float = TUNING) -> Array:
+def shrinkage(D: Array, variance: ArrayLike, tuning: float) -> Array:
     """Return A_z = |D_z|^2 / (|D_z|^2 + c 2 n^2 sigma2) of each frequency; n is the side of D."""
     side = D.shape[-2]
     power = D.real**2 + D.imag**2
@@ -55,7 +55,7 @@ def shrinkage(D: Array, variance: ArrayLike, tuning: float = TUNING) -> Array:
     return np.asarray(power / (power + tuning * expected + SMALLEST_VARIANCE))
 
 
-def merge_tile(T: Array, variance: ArrayLike, *, tuning: float = TUNING) -> Array:
+def merge_tile(T: Array, variance: ArrayLike, *, tuning: float) -> Array:
     """Return the inverse transform of 1/N sum_z (F_z + A_z D_z), a tile merged from N aligned ones.
 
     T (N, ..., n, n) are the tiles, the reference's first, and `variance` (...) is the noise variance

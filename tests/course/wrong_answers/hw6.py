@@ -7,6 +7,7 @@ import numpy as np
 
 from hdrlab.align.cerman import correlation, peaks
 from hdrlab.beyond.assorted import reconstruct
+from hdrlab.beyond.burst.temporal_merge import merge_tile, shrinkage
 from hdrlab.beyond.splitter import join_sensors
 from hdrlab.enhance.skin import distance, find_by_locus
 from hdrlab.response.mann import descend
@@ -105,3 +106,22 @@ def adaptive_log_always_bias_085(L, Lwa, Lmax, *, bias=0.85):
 
 def adaptive_log_one_row(L, Lwa, Lmax, *, bias=0.85):
     return adaptive_log(np.ravel(L), Lwa, Lmax, bias=bias)
+
+
+def merge_tile_difference_from_the_frame_before(T, variance, *, tuning):
+    F = np.fft.fft2(T)
+    D = np.concatenate([np.zeros_like(F[:1]), F[:-1] - F[1:]])
+    A = shrinkage(D, variance, tuning)
+    return np.fft.ifft2(np.mean(F + A * D, axis=0)).real
+
+
+def merge_tile_always_8_pixels_wide(T, variance, *, tuning):
+    return merge_tile(T, variance * 8**2 / np.shape(T)[-1] ** 2, tuning=tuning)
+
+
+def merge_tile_always_12(T, variance, *, tuning):
+    return merge_tile(T, variance, tuning=12.0)
+
+
+def merge_tile_transform_returned(T, variance, *, tuning):
+    return np.fft.fft2(merge_tile(T, variance, tuning=tuning)).real
