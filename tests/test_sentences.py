@@ -1427,7 +1427,77 @@ SENTENCES = {
             and 0.4 < wrong_colors(n, 2) / wrong_colors(n, 1) < 0.6
         ),
     },
+    "27": {
+        "The hand moves the whole photo, by up to 11 pixels.": lambda n: np.abs(n.hand).max() == 11,
+        "The walker moves by 6 pixels more in each frame": lambda n: n.STEP == 6,
+        "a full pixel holds 2000 electrons, and the read noise is 5 electrons": lambda n: (
+            (n.FULL_WELL, n.READ_NOISE) == (2000, 5)
+        ),
+        "The search goes up to 4 pixels in each direction at the coarsest of the four levels": lambda n: (
+            n.tile_alignment.SEARCH_RADII == (4, 2, 2, 1)
+        ),
+        "tiles of 16 × 16 pixels": lambda n: n.tile_alignment.TILE_SIDE == 16,
+        "frame 2 must move 2 pixels down and 6 to the left": lambda n: (
+            n.search_at("the clock").offset == (2, -6) == tuple(n.hand[1])
+        ),
+        "6 pixels farther to the left than the hand alone": lambda n: (
+            n.search_at("the walker").offset == (2, -12)
+        ),
+        "On the sky nothing differs but noise, and the search finds the offset": lambda n: (
+            n.search_at("the sky").offset != tuple(n.hand[1])
+        ),
+        "1 - A = 12 / (4 + 12)": lambda n: n.temporal_merge.TUNING == 12,
+        "most of their frequencies are averaged": lambda n: (
+            np.median(n.weigh_at("the walker").weights[1:]) > 0.7 / 8
+        ),
+        "lose the coarse frequencies, the ones that make up his shape": lambda n: (
+            n.weigh_at("to his right").weights[4:6, 8, 7:10].mean() < 0.3 / 8
+            and np.median(n.weigh_at("to his right").weights[4:6]) > 0.7 / 8
+        ),
+        "The noise falls by a factor of 2.6, and the bound is 2.8": lambda n: (
+            round(float(n.factor), 1) == 2.6 and round(np.sqrt(8), 1) == 2.8
+        ),
+        "8 % more noise is left than in the mean. With $c = 1$ it is 83 %": lambda n: (
+            round(100 * (bounds_of_noise(n, 12.0) - 1)) == 8
+            and round(100 * (bounds_of_noise(n, 1.0) - 1)) == 83
+        ),
+        "with the true motion of the hand for all tiles it would be 7 %": lambda n: (
+            round(100 * (bounds_with_true_motion(n) - 1)) == 7
+        ),
+        "$c = 1000$ is no better than $c = 12$": lambda n: (
+            bounds_of_noise(n, 1000.0) > bounds_of_noise(n, 12.0)
+        ),
+        "the street has 13 % to 8 % more noise than the mean": lambda n: (
+            round(100 * (bounds_of_noise(n, 8.0) - 1)) == 13
+        ),
+        "where he walked the result is about as good as one frame, or better": lambda n: all(
+            n.error_where_walked(n.merge(8, tuning)) < 1.03 * n.alone for tuning in (8.0, 12.0)
+        ),
+        "In the dark parts the bracket has the smaller error": lambda n: (
+            dark_error(n, "bracket") < dark_error(n, "burst") < dark_error(n, "one frame")
+        ),
+        "a factor of 2.8 is one and a half stops": lambda n: np.log2(np.sqrt(8)) == 1.5,
+    },
 }
+
+
+def bounds_with_true_motion(n):
+    """Return `bounds_of_noise` with c = 12 if all tiles move as the hand did."""
+    offsets = np.broadcast_to(n.hand[:, None, None], n.offsets.shape)
+    merged = n.temporal_merge.merge(n.frames, offsets, **n.NOISE)
+    return np.sqrt(8) * n.noise_of(merged)
+
+
+def dark_error(n, name):
+    """Return the error of the darkest quarter of a result on page 27, where nobody walked, in percent."""
+    X, light, moved = n.results[name]
+    L = light.mean(axis=-1)
+    return n.percent(X, light, (np.quantile(L, 0.25) > L) & ~moved)
+
+
+def bounds_of_noise(n, tuning):
+    """Return the noise of the merged street on page 27, relative to that of the mean of all frames."""
+    return np.sqrt(8) * n.noise_of(n.merge(8, tuning))
 
 
 def bits_without_bands(n, encoding):

@@ -31,7 +31,7 @@ SOURCES = {
 INTRODUCTION = """# Methods and where to find them
 
 The course is based on the lecture's slides and four papers. The table lists all of their methods and
-nine newer ones. For each method, it links the functions of the library, the notebook sections that
+ten newer ones. For each method, it links the functions of the library, the notebook sections that
 step through the method, and the tasks in which students implement it. The letters name the source: """
 # the pages for instructors that explain parts of the course, which the reference leaves out
 COURSE_PAGES = {

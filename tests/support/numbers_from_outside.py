@@ -180,4 +180,9 @@ OPEN_TEXT = {
         "21496": "a standard",
         "22028": "a standard",
     },
+    "27": {
+        "1 pixel": "an example of a slow walker, and the last of the search radii",
+        "four times": "the brightness of the figures, see draw",
+        "seven times": "the time of the long photo of the bracket",
+    },
 }

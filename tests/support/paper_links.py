@@ -38,6 +38,7 @@ PAPERS = {
     r"Mantiuk, Myszkowski and Seidel \(ACM TAP 2006\)": DOI + "10.1145/1166087.1166095",
     r"Mertens, Kautz and Van Reeth \((Pacific Graphics )?2007\)": DOI + "10.1109/PG.2007.17",
     r"Mitsunaga and Nayar \((CVPR )?1999\)": DOI + "10.1109/CVPR.1999.786966",
+    r"Monod, Delon and Veit \(2021\)": DOI + "10.5201/ipol.2021.336",
     r"Narasimhan and Nayar \(PAMI 2005\)": DOI + "10.1109/TPAMI.2005.76",
     r"Nayar and Mitsunaga \((CVPR )?2000\)": DOI + "10.1109/CVPR.2000.855857",
     r"Paris and Durand(, 2006| \(ECCV 2006\))": DOI + "10.1007/11744085_44",

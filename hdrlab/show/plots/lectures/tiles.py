@@ -20,9 +20,11 @@ from hdrlab.core.arrays import F32, F64, ArrayLike, NDArray
 from hdrlab.show.plots import bare, reuse
 
 SIZE_INCHES = (8.6, 3.7)
+# pixels around the place of the tile
+SEARCH_RADIUS = 16
 # left, bottom, width, height, as fractions of the figure
 PHOTO_PLACE = (0.005, 0.02, 0.55, 0.88)
-MAP_PLACE = (0.645, 0.15, 0.345, 0.75)
+MAP_PLACE = (0.65, 0.15, 0.335, 0.7)
 SMALL_MAP_WIDTH = 0.1
 SMALL_MAP_GAP = 0.01
 TITLE_SIZE = 10
@@ -83,7 +85,7 @@ def search_tile(
     frame: int,
     down: float,
     right: float,
-    radius: int = 12,
+    radius: int = SEARCH_RADIUS,
     side: int = tile_alignment.TILE_SIDE,
 ) -> TileSearch:
     """Return the distances of one tile from all tiles of a frame up to `radius` pixels away."""
@@ -141,17 +143,39 @@ def draw_search(found: TileSearch) -> Figure:
     is_inside = max(abs(dy), abs(dx)) <= radius
     if is_inside:
         map_axes.plot(dx, dy, "o", markersize=12, mfc="none", mec="white", mew=2)
-    map_axes.set(xlabel="pixels to the right", ylabel="pixels down")
-    words = f"found: {dy:+d} down, {dx:+d} right"
-    if is_inside:
-        distance = found.distances[dy + radius, dx + radius]
-        words += f"; differs by {distance:.2g} % of full"
-    map_axes.set_title(words, fontsize=TITLE_SIZE)
+    map_axes.set(xlabel="offset, pixels to the right", ylabel="offset, pixels down")
+    map_axes.set_title(describe_search(found), fontsize=TITLE_SIZE)
     return cast(Figure, photo_axes.figure)
 
 
+def describe_search(found: TileSearch) -> str:
+    """Return the offset that was found and the distance there, in words.
+
+    Examples
+    --------
+    >>> photo = np.zeros((32, 32), np.uint8)
+    >>> map_ = np.full((3, 3), 2.5)
+    >>> found = TileSearch(photo=photo, place=(1, 1), side=16, distances=map_, offset=(-1, 1))
+    >>> print(describe_search(found))
+    moved 1 up and 1 to the right
+    differs by 2.5 % of a full pixel
+    """
+    dy, dx = found.offset
+    down = f"{abs(dy)} {'down' if dy >= 0 else 'up'}"
+    right = f"{abs(dx)} to the {'right' if dx >= 0 else 'left'}"
+    words = f"moved {down} and {right}"
+    radius = len(found.distances) // 2
+    if max(abs(dy), abs(dx)) > radius:
+        return f"{words}\noutside of this map"
+    distance = found.distances[dy + radius, dx + radius]
+    return f"{words}\ndiffers by {distance:.2g} % of a full pixel"
+
+
 def draw_weights(found: TileWeights) -> Figure:
-    """Draw the photo with the tile, and a map of the weights of each of up to eight frames."""
+    """Draw the photo with the tile, and a map of the weights of each of up to eight frames.
+
+    Yellow is a full share, 1/N; dark blue is 0. For the reference, dark blue is 1/N and yellow is 1.
+    """
 
     def make() -> list[Axes]:
         figure = Figure(figsize=SIZE_INCHES, dpi=100)
@@ -166,8 +190,10 @@ def draw_weights(found: TileWeights) -> Figure:
 
     photo_axes, *maps = reuse.take((*SIZE_INCHES, MAX_FRAMES), make)
     draw_framed(photo_axes, found.photo, found.place, found.side)
+    share = 1 / len(found.weights)
     for k, ax in enumerate(maps[: len(found.weights)]):
-        ax.imshow(found.weights[k], vmin=0, vmax=1, interpolation="nearest", aspect="auto")
+        low, high = (share, 1) if k == 0 else (0, share)
+        ax.imshow(found.weights[k], vmin=low, vmax=high, interpolation="nearest", aspect="auto")
         name = "reference" if k == 0 else f"frame {k + 1}"
         ax.set_title(f"{name}\n{found.weights[k].mean():.0%}", fontsize=TITLE_SIZE - 1)
     return cast(Figure, photo_axes.figure)
