@@ -1,13 +1,7 @@
-"""The sentences of the assignments, and the table of the wrong answers that break them.
-
-`sentences/<homework>.toml` lists all sentences of each task's text. `demands` are those that a
-correct answer must obey: each has wrong answers that break it, and the check at which they lose
-points. `advice` are sentences that no check can test. `explains` has the first words of all others.
-"""
+"""The sentences of the assignments' texts, and the wrong answers that the table of sentences names."""
 
 import importlib.util
 import re
-import tomllib
 from pathlib import Path
 
 from hdrlab.course.checks.mistakes import mistakes_of
@@ -15,19 +9,10 @@ from hdrlab.course.checks.mistakes import mistakes_of
 HERE = Path(__file__).parent
 SOLUTIONS = HERE.parents[1] / "solutions"
 FAIRNESS = HERE.parents[1] / "benchmarks" / "fairness"
-TABLES = sorted((HERE / "sentences").glob("*.toml"))
 
 # the end of a sentence, if no lowercase letter follows
 SENTENCE_END = re.compile(r"(?<=[.?!:])[)*]? +(?=[^a-z ])")
 PARAGRAPH_END = re.compile(r"\n\s*\n|\n(?=\s*(?:- |\d+\. |\|))")
-
-
-def table():
-    """Return what the tables say of each task, by its id."""
-    entries = {}
-    for path in TABLES:
-        entries.update(tomllib.loads(path.read_text(encoding="utf8")))
-    return entries
 
 
 def sentences_of(text):

@@ -9,8 +9,9 @@ import sentences
 
 from hdrlab.course import plan
 from hdrlab.course.checks import inprocess
+from hdrlab.course.checks.sentences import table
 
-TABLE = sentences.table()
+TABLE = table()
 TEXTS = sentences.texts()
 TASKS = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
 
@@ -34,10 +35,10 @@ def test_every_sentence_of_an_assignment_is_in_the_table_and_every_entry_in_the_
         for sentence in TEXTS[task]
         if sentence not in demanded and not sentence.startswith(tuple(others))
     ]
-    assert not missing, "a sentence without an entry in tests/course/sentences"
+    assert not missing, "a sentence without an entry in hdrlab/course/checks/sentences"
     left = [entry for entry in demanded if entry not in TEXTS[task]]
     left += [entry for entry in others if not any(one.startswith(entry) for one in TEXTS[task])]
-    assert not left, "an entry in tests/course/sentences that is not in the assignment"
+    assert not left, "an entry in hdrlab/course/checks/sentences that is not in the assignment"
 
 
 @pytest.mark.parametrize("task", TASKS)
