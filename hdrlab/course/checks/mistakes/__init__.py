@@ -17,6 +17,24 @@ PACKAGE = "course.checks.mistakes"
 
 
 @dataclass(frozen=True, kw_only=True)
+class Question:
+    """A small input on the way from a wrong answer to a mistake, for the tutor.
+
+    Attributes
+    ----------
+    code : lines of Python. The last one is an expression whose value is a number that a student can
+        work out by hand. NumPy is `np`, and the task's function has its own name.
+    why : how to work it out
+    because : the first words of the sentence of the assignment that says so; the sentence must be a
+        demand in `hdrlab/course/checks/sentences`
+    """
+
+    code: str
+    why: str
+    because: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class KnownMistake:
     """A wrong function and what a student reads about it.
 
@@ -29,6 +47,8 @@ class KnownMistake:
     misses_method : whether the mistake misses what the task is about. All others cost half of the
         task's points at most.
     source : the function's dotted path under `hdrlab`; "" for a mistake in an instructor's own task
+    questions : three questions that lead to the mistake. The wrong function answers the last one
+        wrongly. A mistake without questions gets those that the tutor makes from the counterexample.
     """
 
     name: str
@@ -37,6 +57,7 @@ class KnownMistake:
     function: Callable[..., Any]
     misses_method: bool = False
     source: str = ""
+    questions: tuple[Question, ...] = ()
 
     @property
     def costs_half_at_most(self) -> bool:
@@ -47,7 +68,9 @@ class KnownMistake:
 _registered: dict[str, list[KnownMistake]] = {}
 
 
-def mistake(name: str, *, says: str, misses_method: bool = False) -> Callable[[Function], Function]:
+def mistake(
+    name: str, *, says: str, misses_method: bool = False, questions: tuple[Question, ...] = ()
+) -> Callable[[Function], Function]:
     """Register the decorated function as a known mistake of the task that its module is named after.
 
     Parameters
@@ -55,6 +78,7 @@ def mistake(name: str, *, says: str, misses_method: bool = False) -> Callable[[F
     name : the mistake's name: the task's id, an underscore, and a few words
     says : the sentence for the student: what is wrong, and what to do
     misses_method : whether the function misses what the task is about
+    questions : three questions that lead to the mistake, or none
 
     Raises
     ------
@@ -77,6 +101,7 @@ def mistake(name: str, *, says: str, misses_method: bool = False) -> Callable[[F
                 function=function,
                 misses_method=misses_method,
                 source=f"{PACKAGE}.{task}.{function.__name__}",
+                questions=questions,
             )
         )
         return function

@@ -16,7 +16,7 @@ from hdrlab.align.mtb import (
     shrink,
     step,
 )
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 
 
 @mistake(
@@ -53,6 +53,27 @@ def not_doubled(images, *, bits=6, luma=False):
     "align_ties_from_the_corner",
     says="When all nine candidates are equally good, you take the first one, in the corner, and "
     "drift by a pixel per level. Prefer the center.",
+    questions=(
+        Question(
+            code="Y = np.random.default_rng(1).integers(0, 256, (32, 32), np.uint8)\n"
+            "np.abs(align(np.stack([Y, Y]), bits=1)).max()",
+            why="Both images are the same, and they have texture. Only the offset (0, 0) "
+            "makes all bits agree.",
+            because="Take the offset with the smallest",
+        ),
+        Question(
+            code="images = np.full((2, 32, 32), 100, np.uint8)\n"
+            "np.abs(align(images, bits=1)).max()",
+            why="All pixels are equal, so the nine offsets are equally good. The center is (0, 0).",
+            because="In a tie, the center wins",
+        ),
+        Question(
+            code="images = np.full((2, 32, 32), 100, np.uint8)\n"
+            "np.abs(align(images, bits=2)).max()",
+            why="The same on two levels. On each of them, the center wins.",
+            because="In a tie, the center wins",
+        ),
+    ),
 )
 def ties_from_the_corner(images, *, bits=6, luma=False):
     def search(fixed, moving, *, bits=6, q=0.5):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 from hdrlab.response.debevec import Solution
 
 
@@ -72,6 +72,31 @@ def smoothness_not_weighted(Z, B, smoothness, w):
     "gsolve_right_side_not_weighted",
     says="The weight multiplies the whole row: w (g - lE) = w B. Your right-hand side has no "
     "weight.",
+    questions=(
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(4))\n"
+            "g[1]",
+            why="Here n = 4, so g(2) = 0. g(1) = lE + 0 and g(2) = lE + 1, so g(1) is 1 "
+            "below g(2).",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1.0]), 1, np.full(4, 2.0))\n"
+            "g[1]",
+            why="All weights are 2. The weight multiplies the whole bracket, B too, so the "
+            "solution stays the same.",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1.0]), 1, np.full(4, 0.5))\n"
+            "lE[0]",
+            why="lE = g(1) - 0 = -1, whatever the common weight is.",
+            because=r"$$\sum_{i,j}",
+        ),
+    ),
 )
 def right_side_not_weighted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -196,6 +221,28 @@ def lambda_read_as_1(Z, B, smoothness, w):
     "gsolve_log2_of_the_times",
     says="B is the natural logarithm of the times. You used base 2, so every difference of B is "
     "1.44 times too large.",
+    questions=(
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 0.0]), 1, np.ones(4))\n"
+            "g[1]",
+            why="Here n = 4, so g(2) = 0. Both frames have the same time, so g(1) = g(2).",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(4))\n"
+            "g[1]",
+            why="g(1) = lE + 0 and g(2) = lE + 1, so g(1) is 1 below g(2) = 0. B goes into "
+            "the equation as it is.",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2]])\ng, lE = gsolve(Z, np.log([1, 2]), 1, np.ones(4))\ng[1]",
+            why="B is already the natural logarithm of the times, so g(1) is ln 2 below g(2) = 0.",
+            because=r"$$\sum_{i,j}",
+        ),
+    ),
 )
 def log2_of_the_times(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -318,6 +365,33 @@ def lambda_squared_not_weighted(Z, B, smoothness, w):
     "gsolve_nothing_weighted",
     says="You use no weights at all: clipped pixels bend your curve. Multiply the data rows by "
     "w(Z) and the smoothness rows by w(z).",
+    questions=(
+        Question(
+            code="Z = np.array([[1, 2]])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(4))\n"
+            "g[1]",
+            why="Here n = 4, so g(2) = 0. g(1) = lE + 0 and g(2) = lE + 1, so g(1) is 1 "
+            "below g(2).",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2, 3]])\n"
+            "w = np.array([1.0, 1, 1, 0])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1, 5]), 1, w)\n"
+            "g[1]",
+            why="The value 3 has the weight 0, so the third frame says nothing. The answer "
+            "is that of two frames.",
+            because=r"$$\sum_{i,j}",
+        ),
+        Question(
+            code="Z = np.array([[1, 2, 3]])\n"
+            "w = np.array([1.0, 1, 1, 0])\n"
+            "g, lE = gsolve(Z, np.array([0.0, 1, 100]), 1, w)\n"
+            "lE[0]",
+            why="Only the frame with the weight 0 has changed. lE = g(1) - 0 = -1 as before.",
+            because=r"$$\sum_{i,j}",
+        ),
+    ),
 )
 def nothing_weighted(Z, B, smoothness, w):
     ones = np.ones(len(w))

@@ -2,13 +2,31 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 
 
 @mistake(
     "hat_ends_count",
     says="You added 1, so clipped pixel values still have a weight. A pixel of value 255 only "
     "says that there was at least that much light.",
+    questions=(
+        Question(
+            code="hat(5)[2] / max(hat(5))",
+            why="Of the five values 0 to 4, the value 2 is the middle. Its weight is the largest.",
+            because="The hat function weights",
+        ),
+        Question(
+            code="hat(5)[1] / hat(5)[2]",
+            why="The value 1 is 1 away from its end, and the middle is 2 away: 1 / 2.",
+            because="The hat function weights",
+        ),
+        Question(
+            code="hat(5)[0]",
+            why="The value 0 is 0 away from its end, so its weight is 0. The same holds for "
+            "the value 4.",
+            because="The hat function weights",
+        ),
+    ),
 )
 def ends_count(n=256):
     z = np.arange(n)
@@ -28,6 +46,23 @@ def half_at_the_ends(n=256):
 @mistake(
     "hat_of_256_levels",
     says="Your table always has 256 entries. Use n: a 16-bit photo has 65536 pixel values.",
+    questions=(
+        Question(
+            code="len(hat(256))",
+            why="There is one weight for each of the 256 values.",
+            because="The hat function weights",
+        ),
+        Question(
+            code="len(hat(5))",
+            why="For n = 5 there are 5 values, 0 to 4, and one weight for each.",
+            because="The hat function weights",
+        ),
+        Question(
+            code="hat(5)[4]",
+            why="For n = 5 the highest value is n - 1 = 4. It is an end, so its weight is 0.",
+            because="The hat function weights",
+        ),
+    ),
 )
 def of_256_levels(n=256):
     z = np.arange(256)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 
 
 @mistake(
@@ -48,6 +48,24 @@ def linear(L, *, delta=1e-06):
     "log_average_absolute_delta",
     says="You add delta itself, whatever the unit of L is. Add delta times the median of the pixels "
     "that are not black.",
+    questions=(
+        Question(
+            code="log_average(np.array([[1.0]]), delta=1.0)",
+            why="The median is 1, so 1 is added: exp(ln(1 + 1)).",
+            because=r"$\delta$ is `delta` times",
+        ),
+        Question(
+            code="log_average(np.array([[10.0]]), delta=1.0)",
+            why="The median is 10, so 10 is added: exp(ln(10 + 10)).",
+            because=r"$\delta$ is `delta` times",
+        ),
+        Question(
+            code="log_average(np.array([[0.001]]), delta=1.0)",
+            why="The median is 0.001, so 0.001 is added. In any unit, this image gives "
+            "twice its luminance.",
+            because=r"$\delta$ is `delta` times",
+        ),
+    ),
 )
 def absolute_delta(L, *, delta=1e-06):
     return float(np.exp(np.log(L + delta).mean(dtype=np.float64)))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hdrlab.core.weights import hat
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
 
 
@@ -12,6 +12,29 @@ from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
     says="You average the radiances. Average their logarithms: a bright outlier changes that "
     "mean less.",
     misses_method=True,
+    questions=(
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.ones((2, 1, 1), np.uint8)\n"
+            "merge(images, [1, 1], g, np.ones(256))[0, 0]",
+            why="Here g(1) = 0 and all weights are equal, so each frame says E = 1 / t. Both say 1.",
+            because=r"$$\ln E = \frac",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.ones((2, 1, 1), np.uint8)\n"
+            "merge(images, [1, 0.25], g, np.ones(256))[0, 0]",
+            why="The frames say 1 and 4. The mean of ln 1 and ln 4 is ln 2.",
+            because=r"$$\ln E = \frac",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.ones((2, 1, 1), np.uint8)\n"
+            "merge(images, [1, 0.01], g, np.ones(256))[0, 0]",
+            why="The frames say 1 and 100. The mean of ln 1 and ln 100 is ln 10.",
+            because=r"$$\ln E = \frac",
+        ),
+    ),
 )
 def mean_of_radiance(images, times, g, w=None):
     images = np.asarray(images)
@@ -100,6 +123,31 @@ def green_curve_for_all(images, times, g, w=None):
     "merge_log2_of_the_times",
     says="g holds natural logarithms, but you subtract the base-2 logarithm of the times. Take "
     "ln of both.",
+    questions=(
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[100]]], np.uint8)\n"
+            "merge(images, [1], g)[0, 0]",
+            why="Here g is the logarithm of the pixel value, as in a linear camera. One "
+            "frame of 1 s: ln E = ln 100 - ln 1.",
+            because=r"$\ln E = g(Z_j)",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[100]]], np.uint8)\n"
+            "merge(images, [2], g)[0, 0]",
+            why="In twice the time, the same pixel value needs half the light: ln E = ln "
+            "100 - ln 2, so E = 50.",
+            because=r"$\ln E = g(Z_j)",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[1]]], np.uint8)\n"
+            "merge(images, [0.5], g)[0, 0]",
+            why="ln E = ln 1 - ln 0.5 = ln 2, with the natural logarithm in both terms.",
+            because=r"$\ln E = g(Z_j)",
+        ),
+    ),
 )
 def log2_of_the_times(images, times, g, w=None):
     images = np.asarray(images)
@@ -188,6 +236,31 @@ def not_weighted(images, times, g, w=None):
     "merge_clipped_levels_count",
     says="Your hat is not 0 at pixel values 0 and 255, so clipped pixels count. Do not add anything "
     "to the hat.",
+    questions=(
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[50]], [[200]]], np.uint8)\n"
+            "merge(images, [1, 4], g)[0, 0]",
+            why="Here g is the logarithm of the pixel value, as in a linear camera. Both "
+            "frames say 50 / 1 = 200 / 4 = 50.",
+            because=r"$$\ln E = \frac",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[2]], [[255]]], np.uint8)\n"
+            "merge(images, [1, 200], g)[0, 0]",
+            why="The value 255 is clipped and has the weight 0. Only the first frame "
+            "counts: 2 / 1.",
+            because="If it is not given, use the hat",
+        ),
+        Question(
+            code="g = np.log(np.maximum(np.arange(256), 1))\n"
+            "images = np.array([[[0]], [[4]]], np.uint8)\n"
+            "merge(images, [1, 8], g)[0, 0]",
+            why="The value 0 has the weight 0, too. Only the second frame counts: 4 / 8.",
+            because="If it is not given, use the hat",
+        ),
+    ),
 )
 def clipped_levels_count(images, times, g, w=None):
     images = np.asarray(images)

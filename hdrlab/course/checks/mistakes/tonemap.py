@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 from hdrlab.tonemap.reinhard import (
     as_light,
     automatic_key,
@@ -53,6 +53,26 @@ def negative(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
     "tonemap_not_clipped",
     says="Your image has values outside 0 ... 1. A display cannot show them, and 8-bit files wrap"
     " around. Clip it.",
+    questions=(
+        Question(
+            code="tonemap(np.full((2, 2), 5.0), key=1.0, white=np.inf)[0, 0]",
+            why="All pixels are equal, so the log average is 5, and the scaled luminance is "
+            "1: 1 / (1 + 1).",
+            because=r"$$L_d = \frac",
+        ),
+        Question(
+            code="tonemap(np.full((2, 2), 5.0), key=3.0, white=1.0)[0, 0]",
+            why="The scaled luminance is 3. The fraction is 3 (1 + 3) / (1 + 3) = 3, which "
+            "is clipped.",
+            because="$L_d$ is clipped at 1.",
+        ),
+        Question(
+            code="tonemap(np.array([[1.0, 4.0]]), key=1.0, white=1.0)[0, 1]",
+            why="The log average is 2, so the scaled luminance of the second pixel is 2. "
+            "The fraction is 2 (1 + 2) / (1 + 2) = 2, which is clipped.",
+            because="$L_d$ is clipped at 1.",
+        ),
+    ),
 )
 def not_clipped(L, *, key=0.18, white=None, local=False, phi=8.0, threshold=0.05):
     L = as_light(L)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.course.checks.mistakes import mistake
+from hdrlab.course.checks.mistakes import Question, mistake
 
 
 @mistake(
@@ -74,6 +74,24 @@ def nan_spreads(Z, t, E, n=256):
     "update_empty_is_0",
     says="A pixel value that no pixel has gets 0 in your curve. Nothing is known about it: return "
     "NaN there.",
+    questions=(
+        Question(
+            code="update(np.array([[1]]), np.array([2.0]), np.array([3.0]), 4)[1]",
+            why="One pixel has the value 1. Its exposure is 3 times 2 s.",
+            because="$$f^{-1}(m)",
+        ),
+        Question(
+            code="update(np.array([[1]]), np.array([2.0]), np.array([3.0]), 4)[2]",
+            why="No pixel has the value 2. Nothing is known about it.",
+            because="If a value $m$ has no",
+        ),
+        Question(
+            code="update(np.array([[1]]), np.array([2.0]), np.array([np.nan]), 4)[1]",
+            why="The irradiance of the only sample is NaN, so the sample is ignored, and no "
+            "pixel of the value 1 is left.",
+            because="If a value $m$ has no",
+        ),
+    ),
 )
 def empty_is_0(Z, t, E, n=256):
     known = ~np.isnan(E)
