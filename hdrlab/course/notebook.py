@@ -9,9 +9,10 @@ are no processes, the function runs in the kernel (the in-process tier).
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from hdrlab.core.steps import last
-from hdrlab.course import plan as plans
+from hdrlab.course import plan as plans, tutor
 from hdrlab.course.grading import grader, results
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.reports import feedback
@@ -19,6 +20,9 @@ from hdrlab.course.sandbox import in_process
 from hdrlab.course.source_code import closure, names
 from hdrlab.course.submissions import reader
 from hdrlab.errors import InputError
+
+if TYPE_CHECKING:
+    from hdrlab.show.widgets.dialogue import Dialogue, Steps
 
 # WebAssembly computes two to six times more slowly
 BROWSER_TIMEOUT_FACTOR = 3.0
@@ -29,6 +33,7 @@ if in_process.IS_BROWSER:
     )
 # what messages call the code that `check_text` is given
 TEXT = "Your text"
+ABOUT_TUTOR = "They lead from a small input to the mistake. They cost no points."
 
 # the latest result of each task in this kernel, for the bar of the homework
 _latest: dict[str, results.Result] = {}
@@ -57,6 +62,34 @@ class Feedback:
         label = f"{self.homework.name} so far"
         bar = feedback.bar(min(earned, max_points), max_points, label)
         return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{bar}</div>'
+
+
+class FeedbackWithTutor(Feedback):
+    """The Feedback of failed checks, with a button for each task about which the tutor can ask."""
+
+    def _ipython_display_(self) -> None:
+        """Show the feedback, and below it the buttons. Without a kernel, show the feedback alone."""
+        from IPython.display import display
+
+        shown = {"text/html": self._repr_html_(), "text/plain": repr(self)}
+        display(shown, raw=True)
+        if hasattr(_shell(), "kernel"):
+            for task_id in tutor.tasks_to_ask(self.result):
+                display(self.dialogue(task_id))
+
+    def dialogue(self, task_id: str) -> "Dialogue":
+        """Return the button that asks three questions about a task of this result."""
+        from hdrlab.show.widgets.dialogue import Dialogue
+
+        task = next(task for task in self.homework.tasks if task.id == task_id)
+
+        def start() -> "Steps":
+            code = _code_of_kernel(self.homework, [task_id])
+            if code.problems:
+                raise InputError(" ".join(code.problems))
+            return tutor.ask(task, code, self.result, PRACTICE)
+
+        return Dialogue(f"Ask me three questions about {task_id}", start, about=ABOUT_TUTOR)
 
 
 def check(name: str, *, worth: float | None = None) -> Feedback:
@@ -98,6 +131,8 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     progress.update(HTML(""))
     for task_id in task_ids:
         _latest[task_id] = replace(result, checks=result.of(task_id), problems=())
+    if tutor.tasks_to_ask(result):
+        return FeedbackWithTutor(result, homework)
     return Feedback(result, homework)
 
 
@@ -207,14 +242,19 @@ def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
     )
 
 
-def _cells_of_kernel() -> Sequence[closure.Cell]:
-    """Return the text of each cell that was run in this kernel, in order."""
+def _shell() -> Any:
+    """Return the shell of this kernel, None outside IPython."""
     from IPython.core.getipython import get_ipython
 
-    shell = get_ipython()
+    return get_ipython()
+
+
+def _cells_of_kernel() -> Sequence[closure.Cell]:
+    """Return the text of each cell that was run in this kernel, in order."""
+    shell = _shell()
     if shell is None:
         raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
-    inputs: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
+    inputs: list[str] = shell.history_manager.input_hist_raw
     return [
         closure.Cell(text, where=f"input {number}")
         for number, text in enumerate(inputs)

@@ -51,14 +51,7 @@ def shrink(value: Any, holds: Holds) -> Iterator[Any]:
     holds : function
         Whether an input still is what is searched for. It may raise an exception to end the search.
     """
-    ranges = {path: _range(leaf) for path, leaf in leaves(value)}
-    dimensions = _dimensions(value)
-    ways: list[Callable[[Any], Iterator[Any]]] = [
-        _without_items,
-        partial(_without_rows, dimensions=dimensions),
-        partial(_with_simple_arrays, ranges=ranges),
-        _with_simple_numbers,
-    ]
+    ways = _ways(value)
     smallest = value
     is_smaller = True
     while is_smaller:
@@ -68,6 +61,24 @@ def shrink(value: Any, holds: Holds) -> Iterator[Any]:
                 smallest = smaller
                 is_smaller = True
                 yield smallest
+
+
+def simpler_inputs(value: Any) -> Iterator[Any]:
+    """Yield the inputs that are one step smaller or simpler than an input."""
+    for way in _ways(value):
+        yield from way(value)
+
+
+def _ways(value: Any) -> list[Callable[[Any], Iterator[Any]]]:
+    """Return the ways to make an input smaller. Each takes an input, and yields smaller ones."""
+    ranges = {path: _range(leaf) for path, leaf in leaves(value)}
+    dimensions = _dimensions(value)
+    return [
+        _without_items,
+        partial(_without_rows, dimensions=dimensions),
+        partial(_with_simple_arrays, ranges=ranges),
+        _with_simple_numbers,
+    ]
 
 
 def _descend(value: Any, candidates: Callable[[Any], Iterator[Any]], holds: Holds) -> Iterator[Any]:

@@ -1,10 +1,12 @@
 // `widgets.predict`: a question that the reader answers before the result is shown: a choice, a
-// number, a curve or a place in an image. Then the widget shows the truth over the answer. The
+// number on a scale or typed, a curve or a place in an image. Then the widget shows the truth over the answer. The
 // answer stays in the notebook and is sent nowhere.
 //
 // Python sends
-//   kind      choice, number, curve or place
+//   kind      choice, number, entry, curve or place
 //   question  the question
+//   code      lines of Python that the question is about, or ""
+//   covers    whether it covers the cells that follow, and counts on the page
 //   truth     the true answer
 //   told      the true answer in words, "" for a place
 //   because   the explanation
@@ -83,9 +85,50 @@ function createNumberQuestion(root, model) {
   };
 }
 
+const WHOLE_TOLERANCE = 1e-6; // a whole number must be right
+const ENTRY_TOLERANCE = 0.02; // relative error of another number that counts as near
+
+// A number that the reader types. Enter submits it.
+function createEntryQuestion(root, model, submit) {
+  const truth = model.get("truth");
+  const row = addElement(root, "label", { className: "hdrlab-entry" });
+  addElement(row, "span", { textContent: "your answer" });
+  const input = addElement(row, "input", {
+    type: "text",
+    inputMode: "decimal",
+    autocomplete: "off",
+    spellcheck: false,
+  });
+  input.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") submit();
+  });
+  return {
+    request: "Type a number first, or press Show.",
+    read() {
+      const text = input.value.trim().replace(",", ".").replace("\u2212", "-");
+      const number = Number(text);
+      return text === "" || Number.isNaN(number) ? null : number;
+    },
+    show(answer) {
+      input.value = String(answer);
+    },
+    reveal() {
+      input.disabled = true;
+    },
+    compare(answer) {
+      const error = truth - answer;
+      const isWhole = Number.isInteger(truth);
+      const tolerance = isWhole ? WHOLE_TOLERANCE : ENTRY_TOLERANCE * Math.abs(truth);
+      const isNear = Math.abs(error) <= tolerance;
+      return { isNear, words: isNear ? "Yes" : `You said ${answer}` };
+    },
+  };
+}
+
 const CREATE_QUESTION = {
   choice: createChoiceQuestion,
   number: createNumberQuestion,
+  entry: createEntryQuestion,
   curve: createCurveQuestion,
   place: createPlaceQuestion,
 };
@@ -101,9 +144,14 @@ function resultsOnPage(el) {
 }
 
 async function render({ model, el }) {
-  const root = createRoot(el, "predict");
+  const isCovering = model.get("covers");
+  // covers.js looks for the kind "predict"
+  const root = createRoot(el, isCovering ? "predict" : "ask");
   addElement(root, "p", { className: "hdrlab-question", textContent: model.get("question") });
-  const question = await CREATE_QUESTION[model.get("kind")](root, model);
+  if (model.get("code")) {
+    addElement(root, "pre", { className: "hdrlab-code", textContent: model.get("code") });
+  }
+  const question = await CREATE_QUESTION[model.get("kind")](root, model, submit);
   const controls = addElement(root, "div", { className: "hdrlab-controls" });
   const checkButton = addElement(controls, "button", {
     type: "button",
@@ -114,7 +162,7 @@ async function render({ model, el }) {
     textContent: "Show",
     className: "hdrlab-plain",
   });
-  const answersSwitch = addAnswersSwitch(controls);
+  if (isCovering) addAnswersSwitch(controls);
   const note = addElement(root, "p", { className: "hdrlab-note", role: "status" });
   const cover = addElement(root, "p", {
     className: "hdrlab-cover",
@@ -123,27 +171,33 @@ async function render({ model, el }) {
   cover.hidden = true; // covers.js and live.js show it
   let updateCoversNow = () => {};
 
+  // Remember whether an answer was near, and return the results of the page so far as a sentence.
+  function countResult(isNear) {
+    const results = resultsOnPage(el);
+    results.set(model.get("question"), isNear);
+    const nearCount = [...results.values()].filter(Boolean).length;
+    return `On this page so far: ${nearCount} of ${results.size} near.`;
+  }
+
   // The sentences below the truth: how near the answer was, the truth, and the results so far.
   function describeResult(answer) {
     const truth = `The truth: ${model.get("told") || "what is orange."}`;
     const sentences = [truth, model.get("because")];
     if (answer !== null) {
       const { isNear, words } = question.compare(answer);
-      const results = resultsOnPage(el);
-      results.set(model.get("question"), isNear);
-      const nearCount = [...results.values()].filter(Boolean).length;
       sentences.unshift(`${words}.`);
-      sentences.push(`On this page so far: ${nearCount} of ${results.size} near.`);
+      if (isCovering) sentences.push(countResult(isNear));
     }
     return sentences.filter(Boolean).join(" ");
   }
 
   function reveal() {
-    const hadFocus = controls.contains(document.activeElement);
+    const hadFocus = root.contains(document.activeElement);
     question.reveal();
-    for (const part of [checkButton, showButton, answersSwitch, cover]) part.remove();
+    controls.remove();
+    cover.remove();
     note.textContent = describeResult(model.get("given"));
-    // The button that had the focus is gone: Tab continues from the note.
+    // The control that had the focus is gone: Tab continues from the note.
     if (hadFocus) {
       note.tabIndex = -1;
       note.focus();
@@ -159,16 +213,19 @@ async function render({ model, el }) {
     reveal();
   }
 
-  checkButton.addEventListener("click", () => {
+  function submit() {
     const answer = question.read();
-    if (answer === null) note.textContent = "Give an answer first, or press Show.";
+    if (answer === null) note.textContent = question.request ?? "Give an answer first, or press Show.";
     else saveAnswer(answer);
-  });
+  }
+
+  checkButton.addEventListener("click", submit);
   showButton.addEventListener("click", () => saveAnswer(null));
   if (model.get("done")) {
     if (model.get("given") !== null) question.show(model.get("given"));
     reveal();
   }
+  if (!isCovering) return;
   // JupyterLab attaches the widget to the page only after this function.
   requestAnimationFrame(() => {
     updateCoversNow = watchCovers(el);

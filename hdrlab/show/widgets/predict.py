@@ -2,7 +2,6 @@
 
     predict.number("How many stops are between the window and the bench?", 11.4, (0, 20),
     unit="stops")
-
 Readers answer with pointer, finger or keys, or skip the question with one click. This needs no
 kernel. The answer stays in the notebook's own state and is sent nowhere.
 """
@@ -39,8 +38,11 @@ class Prediction(Widget):
     _esm = script(
         "covers.js", "questions.js", "curve_question.js", "place_question.js", "predict.js"
     )
-    kind = traitlets.Unicode().tag(sync=True)  # choice, number, curve or place
+    kind = traitlets.Unicode().tag(sync=True)  # choice, number, entry, curve or place
     question = traitlets.Unicode().tag(sync=True)
+    code = traitlets.Unicode().tag(sync=True)  # lines of Python that the question is about
+    # whether it covers the cells that follow, and counts on the page
+    covers = traitlets.Bool(True).tag(sync=True)
     because = traitlets.Unicode().tag(sync=True)
     truth = traitlets.Any().tag(sync=True)
     told = traitlets.Unicode().tag(sync=True)  # the true answer in words, for some kinds
@@ -58,7 +60,8 @@ class Prediction(Widget):
         """Return the question with an answer that opens on a click, as HTML, and the question."""
         answer = escape(f"{self.told} {self.because}".strip())
         opened = f"<details><summary>Answer</summary>{answer}</details>"
-        return f"<p>{escape(self.question)}</p>{opened}", self.question
+        code = f"<pre>{escape(self.code)}</pre>" if self.code else ""
+        return f"<p>{escape(self.question)}</p>{code}{opened}", self.question
 
 
 def choice(
@@ -146,6 +149,34 @@ def number(
     step = 1.0 if has_whole_steps else (high - low) / SLIDER_STEPS
     answer = f"{truth:.3g} {unit}".strip() + "."
     return ask("number", question, truth, answer, because, scale=[low, high, step], unit=unit)
+
+
+def entry(question: str, truth: float, *, because: str = "") -> Prediction:
+    """Return a question whose answer is a number that readers type.
+
+    A whole number must be right. Of others, an error below 2 % is small.
+
+    Parameters
+    ----------
+    question : str
+    truth : float
+    because : str
+        A sentence that is shown with the answer.
+
+    Raises
+    ------
+    InputError
+        For a truth that is not finite.
+
+    Examples
+    --------
+    >>> entry("What does hat(5)[1] give?", 0.5).told
+    '0.5.'
+    """
+    truth = float(truth)
+    if not np.isfinite(truth):
+        raise InputError(f"expected a finite number to type, got {truth}")
+    return ask("entry", question, truth, f"{truth:.4g}.", because)
 
 
 def curve(

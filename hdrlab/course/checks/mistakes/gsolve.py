@@ -5,6 +5,27 @@ import numpy as np
 from hdrlab.course.checks.mistakes import Question, mistake
 from hdrlab.response.debevec import Solution
 
+# two photos of two pixels that no straight line fits: g(2) = 6 s / (1 + 10 s) for s = lambda squared
+LAMBDA_INPUTS = "Z = np.array([[0, 2], [0, 1]])\n"
+LAMBDA_WHY = "The sum of squares is smallest for g(2) = 6 s / (1 + 10 s), where s is lambda squared"
+LAMBDA_QUESTIONS = (
+    Question(
+        code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(3))[0][2]",
+        why=f"{LAMBDA_WHY}: 6 / 11.",
+        because=r"$$\sum_{i,j}",
+    ),
+    Question(
+        code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 0.5, np.ones(3))[0][2]",
+        why=f"{LAMBDA_WHY} = 0.25: 1.5 / 3.5.",
+        because=r"$$\sum_{i,j}",
+    ),
+    Question(
+        code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 0.1, np.ones(3))[0][2]",
+        why=f"{LAMBDA_WHY} = 0.01: 0.06 / 1.1. Nearly without smoothness, g follows the photos.",
+        because=r"$$\sum_{i,j}",
+    ),
+)
+
 
 @mistake(
     "gsolve_weight_of_the_neighbour",
@@ -159,6 +180,7 @@ def not_weighted(Z, B, smoothness, w):
     "gsolve_lambda_inverted",
     says="Your curve becomes rougher when lambda grows. Multiply the smoothness rows by "
     "lambda; do not divide.",
+    questions=LAMBDA_QUESTIONS,
 )
 def lambda_inverted(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -190,6 +212,7 @@ def lambda_inverted(Z, B, smoothness, w):
     "gsolve_lambda_read_as_1",
     says="What looks like the digit 1 in the printed listing is the letter l, for lambda. Your "
     "smoothness rows ignore lambda.",
+    questions=LAMBDA_QUESTIONS,
 )
 def lambda_read_as_1(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -274,6 +297,7 @@ def log2_of_the_times(Z, B, smoothness, w):
     "gsolve_root_of_lambda",
     says="Your smoothness rows contain the square root of lambda. In the sum, lambda is inside "
     "the square, so the row contains lambda itself.",
+    questions=LAMBDA_QUESTIONS,
 )
 def root_of_lambda(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -325,6 +349,7 @@ def _solve(Z, B, w, data_weights, smoothness_factors):
     "gsolve_lambda_squared",
     says="Your smoothness rows contain the square of lambda. Each row is squared in the sum, so the "
     "row contains lambda itself.",
+    questions=LAMBDA_QUESTIONS,
 )
 def lambda_squared(Z, B, smoothness, w):
     w = np.asarray(w, np.float64)
@@ -345,6 +370,7 @@ def weight_of_the_value_below(Z, B, smoothness, w):
     "gsolve_root_of_lambda_not_weighted",
     says="Your smoothness rows contain the root of lambda and no weight. The row of z is lambda w(z) "
     "(g(z - 1) - 2 g(z) + g(z + 1)).",
+    questions=LAMBDA_QUESTIONS,
 )
 def root_of_lambda_not_weighted(Z, B, smoothness, w):
     w = np.asarray(w, np.float64)
@@ -355,6 +381,7 @@ def root_of_lambda_not_weighted(Z, B, smoothness, w):
     "gsolve_lambda_squared_not_weighted",
     says="Your smoothness rows contain the square of lambda and no weight. The row of z is lambda "
     "w(z) (g(z - 1) - 2 g(z) + g(z + 1)).",
+    questions=LAMBDA_QUESTIONS,
 )
 def lambda_squared_not_weighted(Z, B, smoothness, w):
     w = np.asarray(w, np.float64)

@@ -11,19 +11,19 @@ from hdrlab.course.checks.mistakes import Question, mistake
     "says that there was at least that much light.",
     questions=(
         Question(
-            code="hat(5)[2] / max(hat(5))",
-            why="Of the five values 0 to 4, the value 2 is the middle. Its weight is the largest.",
+            code="hat(6)[2] / hat(6)[3]",
+            why="The six values are 0 to 5. The values 2 and 3 are both 2 away from their end.",
             because="The hat function weights",
         ),
         Question(
-            code="hat(5)[1] / hat(5)[2]",
-            why="The value 1 is 1 away from its end, and the middle is 2 away: 1 / 2.",
+            code="hat(6)[1] / hat(6)[2]",
+            why="The value 1 is 1 away from its end, and the value 2 is 2 away: 1 / 2.",
             because="The hat function weights",
         ),
         Question(
-            code="hat(5)[0]",
+            code="hat(6)[0] / hat(6)[2]",
             why="The value 0 is 0 away from its end, so its weight is 0. The same holds for "
-            "the value 4.",
+            "the value 5.",
             because="The hat function weights",
         ),
     ),
@@ -53,13 +53,13 @@ def half_at_the_ends(n=256):
             because="The hat function weights",
         ),
         Question(
-            code="len(hat(5))",
-            why="For n = 5 there are 5 values, 0 to 4, and one weight for each.",
+            code="len(hat(6))",
+            why="For n = 6 there are 6 values, 0 to 5, and one weight for each.",
             because="The hat function weights",
         ),
         Question(
-            code="hat(5)[4]",
-            why="For n = 5 the highest value is n - 1 = 4. It is an end, so its weight is 0.",
+            code="hat(6)[5] / max(hat(6))",
+            why="For n = 6 the highest value is n - 1 = 5. It is an end, so its weight is 0.",
             because="The hat function weights",
         ),
     ),
