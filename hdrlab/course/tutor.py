@@ -80,11 +80,6 @@ class Step:
     sentence: str = ""
 
     @property
-    def expression(self) -> str:
-        """The last line of the code."""
-        return self.code.rpartition("\n")[2]
-
-    @property
     def is_right(self) -> bool:
         """Whether the student's function gives the right value."""
         return not self.failure and not counterexamples.differs(self.yours, self.right)
@@ -290,7 +285,8 @@ class Tutor:
 
     def _question(self, number: int, step: Step) -> predict.Prediction:
         """Return the form that asks for a step's right value."""
-        asked = f"{number}. What should {step.expression} give here?"
+        what = "the last line" if "\n" in step.code else "this"
+        asked = f"{number}. What should {what} give?"
         labels = self._labels(step)
         if labels:
             truth = labels.index(snippets.show(step.right))
@@ -392,19 +388,23 @@ class Tutor:
             return []
         source = self._code.sources[self._task.id]
         with self._subject() as subject:
+
+            def is_right(changed: str) -> bool:
+                return self._is_right_everywhere(changed, steps, subject)
+
             for known in mistakes:
-                if known.source:
-                    found = patches.edits(
-                        self._source(known.source), self._source(self._task.function)
-                    )
-                    numbers = patches.wrong_lines(
-                        source,
-                        found,
-                        lambda changed: self._is_right_everywhere(changed, steps, subject),
-                    )
+                for found in self._edits(known):
+                    numbers = patches.wrong_lines(source, found, is_right)
                     if numbers:
                         return numbers
         return []
+
+    def _edits(self, known: KnownMistake) -> Iterator[list[patches.Edit]]:
+        """Yield the changes of code that may correct a mistake: its fixes, and those to the solution."""
+        if known.fixes:
+            yield [patches.edit(wrong, right) for wrong, right in known.fixes]
+        if known.source:
+            yield patches.edits(self._source(known.source), self._source(self._task.function))
 
     def _source(self, function: str) -> str:
         """Return the text of one of hdrlab's functions, as a student's cell would hold it."""

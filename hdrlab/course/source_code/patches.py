@@ -48,16 +48,32 @@ def edits(wrong: str, right: str) -> list[Edit]:
     """
     before = [token.string for token in _tokens(wrong)]
     after = [token.string for token in _tokens(right)]
-    found = []
-    for kind, i, j, k, m in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+    matcher = SequenceMatcher(None, before, after, autojunk=False)
+    spans: list[list[int]] = []
+    for kind, i, j, k, m in matcher.get_opcodes():
         if kind == "equal":
             continue
         if kind == "insert":  # nothing to look for: take a token on either side along
-            i, j, k, m = i - 1, j + 1, k - 1, m + 1
-        edit = Edit(tuple(before[max(i, 0) : j]), tuple(after[max(k, 0) : m]))
-        if max(len(edit.wrong), len(edit.right)) <= MAX_EDIT_TOKENS:
-            found.append(edit)
+            i, j, k, m = max(i - 1, 0), j + 1, max(k - 1, 0), m + 1
+        if spans and i < spans[-1][1]:  # two inserts share a token
+            spans[-1][1] = j
+            spans[-1][3] = m
+        else:
+            spans.append([i, j, k, m])
+    found = []
+    for i, j, k, m in spans:
+        length = max(j - i, m - k)
+        if j > i and length <= MAX_EDIT_TOKENS:
+            found.append(Edit(tuple(before[i:j]), tuple(after[k:m])))
     return found
+
+
+def edit(wrong: str, right: str) -> Edit:
+    """Return the edit between two pieces of code."""
+    return Edit(
+        tuple(token.string for token in _tokens(wrong)),
+        tuple(token.string for token in _tokens(right)),
+    )
 
 
 def wrong_lines(source: str, found: list[Edit], is_right: Callable[[str], bool]) -> list[int]:
@@ -114,6 +130,8 @@ def _changed_texts(source: str, found: list[Edit]) -> dict[int, list[str]]:
             lines.setdefault(token.start[0], []).append(token)
     texts = {}
     for number, tokens in lines.items():
+        if tokens[0].string == "def":  # a signature is given
+            continue
         choices = list(_choices(tokens, found))
         if choices:
             texts[number] = list(dict.fromkeys(_replace(tokens, choice) for choice in choices))

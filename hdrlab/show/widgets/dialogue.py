@@ -21,6 +21,8 @@ from hdrlab.show.widgets.predict import Prediction
 Steps = Iterator[Prediction | str]
 # what is shown while Python computes the next step
 WAITING = "<p>Running ...</p>"
+# the size of a notebook's text, which ipywidgets would make smaller
+TEXT_STYLE = {"font_size": "var(--jp-content-font-size1, 14px)"}
 
 
 class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no types
@@ -46,7 +48,7 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
         )
         self.button.on_click(lambda _: self.begin())
         self._head = ipywidgets.HBox(
-            [self.button, ipywidgets.HTML(escape(about))],
+            [self.button, ipywidgets.HTML(escape(about), style=TEXT_STYLE)],
             layout=ipywidgets.Layout(flex_flow="row wrap", align_items="center"),
         )
         super().__init__([self._head])
@@ -70,16 +72,16 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
     def _go_on(self) -> None:
         """Show the steps up to the next question."""
         shown: tuple[Any, ...] = self.children
-        self.children = (*shown, ipywidgets.HTMLMath(WAITING))
+        self.children = (*shown, _text(WAITING))
         try:
             for step in self._steps:
                 if isinstance(step, Prediction):
                     step.observe(lambda _: self._go_on(), "done")
                     shown = (*shown, step)
                     break
-                shown = (*shown, ipywidgets.HTMLMath(step))
+                shown = (*shown, _text(step))
         except HdrlabError as error:
-            shown = (*shown, ipywidgets.HTMLMath(f"<p>{escape(str(error))}</p>"))
+            shown = (*shown, _text(f"<p>{escape(str(error))}</p>"))
         finally:
             self.children = shown
 
@@ -87,3 +89,7 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
         bundle = super()._repr_mimebundle_(**kwargs)
         text = f"{self.button.description}: run this cell again"
         return dict(bundle) | {"text/html": f"<p>{escape(text)}</p>", "text/plain": text}, {}
+
+
+def _text(html: str) -> ipywidgets.HTMLMath:
+    return ipywidgets.HTMLMath(html, style=TEXT_STYLE)

@@ -181,7 +181,8 @@ async function render({ model, el }) {
 
   // The sentences below the truth: how near the answer was, the truth, and the results so far.
   function describeResult(answer) {
-    const truth = `The truth: ${model.get("told") || "what is orange."}`;
+    const name = isCovering ? "The truth" : "The right value";
+    const truth = `${name}: ${model.get("told") || "what is orange."}`;
     const sentences = [truth, model.get("because")];
     if (answer !== null) {
       const { isNear, words } = question.compare(answer);

@@ -49,6 +49,9 @@ class KnownMistake:
     source : the function's dotted path under `hdrlab`; "" for a mistake in an instructor's own task
     questions : three questions that lead to the mistake. The wrong function answers the last one
         wrongly. A mistake without questions gets those that the tutor makes from the counterexample.
+    fixes : pieces of wrong code as students write them, and the right ones. Where such a change makes
+        a student's function right, the tutor shows her the line. Changes between the wrong function
+        and the solution are tried as well.
     """
 
     name: str
@@ -58,6 +61,7 @@ class KnownMistake:
     misses_method: bool = False
     source: str = ""
     questions: tuple[Question, ...] = ()
+    fixes: tuple[tuple[str, str], ...] = ()
 
     @property
     def costs_half_at_most(self) -> bool:
@@ -69,7 +73,12 @@ _registered: dict[str, list[KnownMistake]] = {}
 
 
 def mistake(
-    name: str, *, says: str, misses_method: bool = False, questions: tuple[Question, ...] = ()
+    name: str,
+    *,
+    says: str,
+    misses_method: bool = False,
+    questions: tuple[Question, ...] = (),
+    fixes: tuple[tuple[str, str], ...] = (),
 ) -> Callable[[Function], Function]:
     """Register the decorated function as a known mistake of the task that its module is named after.
 
@@ -79,6 +88,7 @@ def mistake(
     says : the sentence for the student: what is wrong, and what to do
     misses_method : whether the function misses what the task is about
     questions : three questions that lead to the mistake, or none
+    fixes : pairs of wrong and right code, with which the tutor looks for the student's line
 
     Raises
     ------
@@ -102,6 +112,7 @@ def mistake(
                 misses_method=misses_method,
                 source=f"{PACKAGE}.{task}.{function.__name__}",
                 questions=questions,
+                fixes=fixes,
             )
         )
         return function

@@ -60,6 +60,7 @@ def not_clipped(Lm, adaptation, white=np.inf):
             because=r"$$L_d = \frac",
         ),
     ),
+    fixes=(("white", "white**2"),),
 )
 def white_not_squared(Lm, adaptation, white=np.inf):
     return np.minimum(Lm * (1 + Lm / white) / (1 + adaptation), 1)

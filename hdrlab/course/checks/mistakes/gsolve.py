@@ -298,6 +298,10 @@ def log2_of_the_times(Z, B, smoothness, w):
     says="Your smoothness rows contain the square root of lambda. In the sum, lambda is inside "
     "the square, so the row contains lambda itself.",
     questions=LAMBDA_QUESTIONS,
+    fixes=(
+        ("** 0.5", ""),
+        ("np.sqrt", ""),
+    ),
 )
 def root_of_lambda(Z, B, smoothness, w):
     def system(Z, B, smoothness, w):
@@ -350,6 +354,7 @@ def _solve(Z, B, w, data_weights, smoothness_factors):
     says="Your smoothness rows contain the square of lambda. Each row is squared in the sum, so the "
     "row contains lambda itself.",
     questions=LAMBDA_QUESTIONS,
+    fixes=(("** 2", ""),),
 )
 def lambda_squared(Z, B, smoothness, w):
     w = np.asarray(w, np.float64)

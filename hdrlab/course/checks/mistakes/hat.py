@@ -27,6 +27,11 @@ from hdrlab.course.checks.mistakes import Question, mistake
             because="The hat function weights",
         ),
     ),
+    fixes=(
+        ("z + 1", "z"),
+        ("n - z", "n - 1 - z"),
+        ("256 - z", "255 - z"),
+    ),
 )
 def ends_count(n=256):
     z = np.arange(n)
@@ -62,6 +67,12 @@ def half_at_the_ends(n=256):
             why="For n = 6 the highest value is n - 1 = 5. It is an end, so its weight is 0.",
             because="The hat function weights",
         ),
+    ),
+    fixes=(
+        ("256", "n"),
+        ("255", "(n - 1)"),
+        ("128", "(n // 2)"),
+        ("127", "((n - 1) // 2)"),
     ),
 )
 def of_256_levels(n=256):

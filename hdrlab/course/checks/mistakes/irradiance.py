@@ -33,6 +33,10 @@ from hdrlab.course.checks.mistakes import Question, mistake
             because="If all weights of a sample are 0",
         ),
     ),
+    fixes=(
+        ("np.nan_to_num", "np.asarray"),
+        ("+ eps", ""),
+    ),
 )
 def black_where_clipped(Z, t, f_inv, w):
     with np.errstate(invalid="ignore"):

@@ -66,6 +66,7 @@ def linear(L, *, delta=1e-06):
             because=r"$\delta$ is `delta` times",
         ),
     ),
+    fixes=(("delta", "delta * np.median(L[L > 0])"),),
 )
 def absolute_delta(L, *, delta=1e-06):
     return float(np.exp(np.log(L + delta).mean(dtype=np.float64)))

@@ -261,6 +261,11 @@ def not_weighted(images, times, g, w=None):
             because="If it is not given, use the hat",
         ),
     ),
+    fixes=(
+        ("z + 1", "z"),
+        ("n - z", "n - 1 - z"),
+        ("256 - z", "255 - z"),
+    ),
 )
 def clipped_levels_count(images, times, g, w=None):
     images = np.asarray(images)

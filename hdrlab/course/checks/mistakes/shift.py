@@ -27,6 +27,10 @@ from hdrlab.course.checks.mistakes import Question, mistake
             because="An offset $(dy, dx)$",
         ),
     ),
+    fixes=(
+        ("[0]", "[1]"),
+        ("[1]", "[0]"),
+    ),
 )
 def axes_swapped(images, offsets):
     images = np.asarray(images)

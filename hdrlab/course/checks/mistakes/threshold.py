@@ -25,6 +25,11 @@ from hdrlab.course.checks.mistakes import Question, mistake
             because="For $q = 1/2$ that is the median",
         ),
     ),
+    fixes=(
+        ("/ 2", "* q"),
+        ("// 2", "* q"),
+        ("0.5", "q"),
+    ),
 )
 def always_half(h, q):
     below = np.cumsum(h)
@@ -63,6 +68,7 @@ def mean(h, q):
             because="The threshold is the lowest",
         ),
     ),
+    fixes=((">", ">="),),
 )
 def goes_on(h, q):
     below = np.cumsum(h)

@@ -92,6 +92,10 @@ def nan_spreads(Z, t, E, n=256):
             because="If a value $m$ has no",
         ),
     ),
+    fixes=(
+        ("np.zeros(n)", "np.full(n, np.nan)"),
+        ("np.maximum(count, 1)", "count"),
+    ),
 )
 def empty_is_0(Z, t, E, n=256):
     known = ~np.isnan(E)
