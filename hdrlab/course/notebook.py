@@ -87,7 +87,7 @@ class FeedbackWithTutor(Feedback):
             code = _code_of_kernel(self.homework, [task_id])
             if code.problems:
                 raise InputError(" ".join(code.problems))
-            return tutor.ask(task, code, self.result, PRACTICE)
+            yield from tutor.ask(task, code, self.result, PRACTICE)
 
         return Dialogue(f"Ask me three questions about {task_id}", start, about=ABOUT_TUTOR)
 

@@ -322,16 +322,13 @@ class Tutor:
     def _explanation(self, step: Step) -> str:
         """Return what is said after the answer to a question."""
         name = _code(self._task.name)
-        right = _code(snippets.show(step.right))
         if step.failure:
-            parts = [
-                f"Your {name} gives no value: {_code(step.failure)}. The right value is {right}."
-            ]
+            parts = [f"<b>Your {name} gives no value:</b> {_code(step.failure)}."]
         elif step.is_right:
-            parts = [f"Your {name} gives {_code(snippets.show(step.yours))}, which is right."]
+            parts = [f"<b>Your {name} leads to this value, too.</b>"]
         else:
             yours = _code(snippets.show(step.yours))
-            parts = [f"Your {name} gives {yours}. <b>The right value is {right}.</b>"]
+            parts = [f"<b>Your {name} leads to {yours}.</b>"]
         if step.why:
             parts.append(escape(step.why))
         if step.sentence:

@@ -11,6 +11,9 @@ pytestmark = pytest.mark.browser
 WRONG = """def hat(n=256):
 z = np.arange(n)
 return np.abs(z - n // 2) / (n // 2)"""
+ENDS_COUNT = """def hat(n=256):
+z = np.arange(n)
+return np.minimum(z + 1, n - z) / (n // 2)"""
 RIGHT = """def hat(n=256):
 z = np.arange(n)
 return np.minimum(z, n - 1 - z) / ((n - 2) // 2)"""
@@ -100,5 +103,36 @@ def test_a_failing_check_passes_after_the_student_edits_the_cell(lab, page, axe,
         assert [
             url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))
         ] == []
+    finally:
+        lab.close()
+
+
+def test_a_student_answers_the_questions_of_the_tutor_by_keyboard(lab, page, axe, handout):
+    try:
+        lab.open(page, handout)
+        page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
+        lab.until_done(page)
+        assert cell(page, "check-hat").get_by_role("button").count() == 0  # a stub has no questions
+        write(page, "task-hat", ENDS_COUNT)
+        answered(page, "hat", "Likely mistake")
+        below = cell(page, "check-hat")
+        below.get_by_role("button", name="Ask me three questions about hat").focus()
+        page.keyboard.press("Enter")
+        forms = below.locator("[data-kind=ask]")
+        for number, answer in enumerate(("1", "0,6", "0")):
+            forms.nth(number).wait_for(timeout=ANSWER)
+            page.keyboard.press("Tab")
+            page.keyboard.type(answer)
+            page.keyboard.press("Enter")
+        below.get_by_text("Look at this line").wait_for(timeout=ANSWER)
+        said = below.inner_text()
+        assert said.count("Yes. The right value") == 2
+        assert "You said 0.6. The right value: 0.5." in said
+        assert "Your hat leads to 0.666667." in said and "Your hat leads to 0.333333." in said
+        assert "return np.minimum(z + 1, n - z) / (n // 2)" in said.split("Look at this line")[1]
+        page.evaluate(
+            "document.querySelectorAll('[data-kind=ask]').forEach((f, k) => f.id = `q${k}`)"
+        )
+        assert axe(page, "#q1") == []
     finally:
         lab.close()

@@ -19,6 +19,7 @@ ASKED = {
         "Which is gray?", 0, ["A", "B"], pictures=[LEVELS // 2 + 60, LEVELS // 9]
     ),
     "number": lambda: predict.number("How many stops?", 12, (0, 20), unit="stops"),
+    "entry": lambda: predict.entry("What does it give?", 0.667, because="It is 2 / 3."),
     "curve": lambda: predict.curve("Draw it.", [0, 1], [0, 1], names=("level", "light")),
     "place": lambda: predict.place(
         "Where is it brightest?", LEVELS > 185, LEVELS, alt="A ramp to white"
@@ -54,6 +55,30 @@ def show(page):
 
 def given(page):
     return page.evaluate("window.model.get('given')")
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        ("0,67", "Yes."),
+        (" 0.667 ", "Yes."),
+        ("\u22120.667", "You said -0.667."),
+        ("1", "You said 1."),
+    ],
+)
+def test_a_typed_number_is_compared_with_the_truth(ask, typed, said):
+    page = ask("entry", code="hat(6)[2]", covers=False)
+    page.get_by_role("textbox", name="your answer").fill(typed)
+    page.keyboard.press("Enter")
+    assert status(page) == f"{said} The right value: 0.667. It is 2 / 3."
+    assert given(page) == float(typed.replace(",", ".").replace("\u2212", "-"))
+
+
+def test_text_that_is_no_number_is_not_taken_as_an_answer(ask):
+    page = ask("entry")
+    page.get_by_role("textbox", name="your answer").fill("two")
+    page.keyboard.press("Enter")
+    assert "Type a number" in status(page) and given(page) is None
 
 
 def test_a_choice_is_compared_with_the_truth_and_kept(ask):
