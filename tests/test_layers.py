@@ -47,6 +47,7 @@ COURSE_PARTS = (
     "submissions",
     "grading",
     "reports",
+    "tutor",
     "notebook",
     "classroom",
     "authoring",

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hdrlab.core.steps import last
-from hdrlab.course import plan as plans, tutor
+from hdrlab.course import plan as plans
 from hdrlab.course.grading import grader, results
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.reports import feedback
@@ -71,6 +71,8 @@ class FeedbackWithTutor(Feedback):
         """Show the feedback, and below it the buttons. Without a kernel, show the feedback alone."""
         from IPython.display import display
 
+        from hdrlab.course import tutor
+
         shown = {"text/html": self._repr_html_(), "text/plain": repr(self)}
         display(shown, raw=True)
         if hasattr(_shell(), "kernel"):
@@ -79,6 +81,7 @@ class FeedbackWithTutor(Feedback):
 
     def dialogue(self, task_id: str) -> "Dialogue":
         """Return the button that asks three questions about a task of this result."""
+        from hdrlab.course import tutor
         from hdrlab.show.widgets.dialogue import Dialogue
 
         task = next(task for task in self.homework.tasks if task.id == task_id)
@@ -115,6 +118,9 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
         Outside a notebook; there, use `hdrlab check FILE`.
     """
     from IPython.display import HTML, DisplayHandle
+
+    # a page of the site calls `check_text` and has no widgets
+    from hdrlab.course import tutor
 
     homework, task_ids = find_tasks(name)
     code = _code_of_kernel(homework, task_ids)

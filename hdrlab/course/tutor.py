@@ -497,6 +497,9 @@ def _code(text: str) -> str:
 
 
 def _quote(sentence: str) -> str:
+    """Return a sentence between quotes as HTML; a displayed formula has a line of its own."""
+    if sentence.startswith("$$"):
+        return _html(sentence)
     return f"<q>{_html(sentence)}</q>"
 
 
