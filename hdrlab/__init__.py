@@ -26,8 +26,7 @@ Ghosts, veiling glare, exposure ratios radiance.deghosting.ghosts, radiance.flar
 Local Laplacian filters                tonemap.local_laplacian.tonemap
 Drago's logarithm, view transforms     tonemap.drago, tonemap.agx, tonemap.khronos
 Transfer functions of screens: PQ, HLG tonemap.transfer
-Other cameras, patches, video          beyond.assorted, beyond.flutter, beyond.patches, beyond.video
-A burst: tile alignment, Wiener merge  beyond.burst.tile_alignment, beyond.burst.temporal_merge
+Bursts, other cameras, patches, video  beyond.burst, beyond.assorted, beyond.patches, beyond.video
 Fast versions of the same functions    fast.debevec, fast.merge, fast.durand
 Consistency checks of a radiance map   diagnostics.consistency, diagnostics.contradictions
 The whole pipeline                     pipeline.assemble, pipeline.develop; io.photos.read_bracket
