@@ -23,7 +23,7 @@ def test_a_list_of_photographs_becomes_one_array(shape):
 
 
 @pytest.mark.parametrize(
-    ("images", "said"),
+    ("images", "message"),
     [
         ([], r"stack of images .* got shape \(0,\)"),
         (np.zeros((4, 5), np.uint8), r"got shape \(4, 5\)"),
@@ -46,8 +46,8 @@ def test_a_list_of_photographs_becomes_one_array(shape):
         ),
     ],
 )
-def test_invalid_stacks_raise_an_error(images, said):
-    with pytest.raises(ValueError, match=said):
+def test_invalid_stacks_raise_an_error(images, message):
+    with pytest.raises(ValueError, match=message):
         arrays.as_stack(images)
 
 
@@ -89,7 +89,9 @@ def test_radiance_and_luminance_become_float32_without_a_copy_where_they_are(che
 @pytest.mark.parametrize("check", [arrays.as_radiance, arrays.as_luminance])
 def test_the_error_counts_nan_infinite_and_negative_values(check):
     E = np.ones((4, 5))
-    E[0, :2], E[1, :3], E[2, 0] = np.nan, np.inf, -1
+    E[0, :2] = np.nan
+    E[1, :3] = np.inf
+    E[2, 0] = -1
     with pytest.raises(ValueError, match="2 NaN, 3 infinite and 1 negative"):
         check(E)
 

@@ -14,7 +14,8 @@ IMAGES = np.random.default_rng(0).integers(0, 256, (3, 4, 5), np.uint8)
 
 @pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_frames_in_any_order_give_the_same_bracket(order):
-    order, masks = list(order), IMAGES > 20
+    order = list(order)
+    masks = IMAGES > 20
     made = bracket(
         IMAGES[order], np.array([1.0, 2, 4])[order], [f"{j}.jpg" for j in order], valid=masks[order]
     )
@@ -24,7 +25,8 @@ def test_frames_in_any_order_give_the_same_bracket(order):
 
 @pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_frames_of_equal_times_are_sorted_independently_of_their_order(order):
-    images, times = IMAGES[list(order)], np.array([1.0, 1, 1])
+    images = IMAGES[list(order)]
+    times = np.array([1.0, 1, 1])
     assert np.array_equal(
         images[short_to_long(images, times)], IMAGES[short_to_long(IMAGES, times)]
     )
@@ -46,13 +48,14 @@ def test_a_bracket_keeps_its_times_when_the_callers_array_changes():
 
 
 def test_bracket_does_not_change_its_arguments():
-    images, times = IMAGES.copy(), np.array([4.0, 2, 1])
+    images = IMAGES.copy()
+    times = np.array([4.0, 2, 1])
     bracket(images, times)
     assert np.array_equal(images, IMAGES) and times.tolist() == [4, 2, 1]
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("changes", "message"),
     [
         ({"times": [1, 2]}, "expected 3 exposure times"),
         ({"times": [1, 2, 0]}, "positive exposure times"),
@@ -61,9 +64,9 @@ def test_bracket_does_not_change_its_arguments():
         ({"images": IMAGES.astype(float)}, "uint8 or uint16"),
     ],
 )
-def test_arguments_that_do_not_fit_together_raise_an_error(given, said):
-    with pytest.raises(ValueError, match=said):
-        bracket(**({"images": IMAGES, "times": [1, 2, 3]} | given))
+def test_arguments_that_do_not_fit_together_raise_an_error(changes, message):
+    with pytest.raises(ValueError, match=message):
+        bracket(**({"images": IMAGES, "times": [1, 2, 3]} | changes))
 
 
 def test_a_bracket_is_made_by_keywords_and_cannot_be_changed():

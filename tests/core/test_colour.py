@@ -14,8 +14,10 @@ Ld = (L / (1 + L)).astype(np.float32)
 
 
 def keeping_hue(E, L, Ld, *, saturation=1.0):
-    """Return what `render` shows by way of hue, before it is encoded."""
-    E, L, Ld = (np.asarray(one, np.float32) for one in (E, L, Ld))
+    """Return what `render` shows with way="hue", before it is encoded."""
+    E = np.asarray(E, np.float32)
+    L = np.asarray(L, np.float32)
+    Ld = np.asarray(Ld, np.float32)
     return np.clip(Ld, 0, 1) if E.ndim == 2 else colour.WAYS["hue"](E, L, Ld, saturation)
 
 
@@ -64,7 +66,8 @@ def test_gamut_hue_stays_in_gamut_and_adds_no_light(rgb, ld, saturation):
 
 def test_gamut_hue_keeps_the_hue_that_clipping_would_change():
     E = np.array([[[1.0, 0.5, 0.0]]])
-    L, Ld = colour.luminance(E), np.array([[0.9]])
+    L = colour.luminance(E)
+    Ld = np.array([[0.9]])
 
     def hue(C):  # where the middle channel stands between the least and the greatest
         least, middle, greatest = np.sort(C[0, 0])
@@ -188,7 +191,10 @@ def test_render_accepts_ratio_and_hue():
 
 @pytest.mark.parametrize("saturation", [0.3, 1.0])
 def test_hue_is_kept_by_gamut_hue_always_and_by_ratio_without_clipping(saturation):
-    """Hue as the direction away from gray: by the way of hue for any saturation to 1, by ratio for its 1."""
+    """Hue is the direction away from gray.
+
+    way="hue" keeps it up to saturation 1, way="ratio" only at saturation 1.
+    """
 
     def direction(C):
         away = (C - C.mean(axis=-1, keepdims=True)).astype(float)
@@ -199,11 +205,9 @@ def test_hue_is_kept_by_gamut_hue_always_and_by_ratio_without_clipping(saturatio
     shown = keeping_hue(E, L, bright, saturation=saturation)
     assert np.sum(direction(shown) * direction(E), axis=-1)[coloured].min() > 0.9999
     fits = (E / L[..., None] * Ld[..., None]).max(axis=-1) < 1
-    kept, clipped = (
-        np.sum(direction(colour.recolour(E, L, Ld)) * direction(E), axis=-1)[coloured & one].min()
-        for one in (fits, ~fits)
-    )
-    assert kept > 0.9999 and clipped < 0.9
+    cosine = np.sum(direction(colour.recolour(E, L, Ld)) * direction(E), axis=-1)
+    assert cosine[coloured & fits].min() > 0.9999
+    assert cosine[coloured & ~fits].min() < 0.9
 
 
 def test_to_8bit_encodes_a_gray_ramp_like_opencv():

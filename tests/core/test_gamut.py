@@ -16,27 +16,29 @@ values = st.floats(-1e6, 1e6, width=32)
 
 
 def saturation(E):
-    """Return how far the channels of each pixel lie apart, of the greatest: 1 has a channel at 0."""
-    most, least = E.max(axis=-1), E.min(axis=-1)
+    """Return (max - min) / max of each pixel's channels; it is 1 if a channel is 0."""
+    most = E.max(axis=-1)
+    least = E.min(axis=-1)
     return (most - least) / np.maximum(most, 1e-30)
 
 
 def test_valid_radiance_is_not_changed():
     E = np.random.default_rng(0).random((5, 6, 3), np.float32)
-    for one in (E, E[..., 0], np.zeros((2, 3))):
-        found = gamut.sanitize(one)
-        assert np.array_equal(found.E, one)
-        assert found.unknown == found.infinite == found.negative == found.black == 0
-        assert not np.shares_memory(found.E, one)
+    for radiance in (E, E[..., 0], np.zeros((2, 3))):
+        sanitized = gamut.sanitize(radiance)
+        assert np.array_equal(sanitized.E, radiance)
+        assert sanitized.unknown == sanitized.infinite == sanitized.negative == sanitized.black == 0
+        assert not np.shares_memory(sanitized.E, radiance)
 
 
 @given(st.tuples(values, values, values))
 def test_sanitize_removes_negative_channels_and_keeps_luminance_where_possible(rgb):
     E = np.array([[rgb]], np.float32)
-    found = gamut.sanitize(E).E
-    assert np.all(found >= 0) and np.all(np.isfinite(found))
-    true, shown = float(E[0, 0] @ LUMINANCE), float(np.maximum(E[0, 0], 0) @ LUMINANCE)
-    repaired = float(luminance(found)[0, 0])
+    sanitized = gamut.sanitize(E).E
+    assert np.all(sanitized >= 0) and np.all(np.isfinite(sanitized))
+    true = float(E[0, 0] @ LUMINANCE)
+    shown = float(np.maximum(E[0, 0], 0) @ LUMINANCE)
+    repaired = float(luminance(sanitized)[0, 0])
     if E.min() >= 0 or true > 0.51 * shown:
         assert repaired == pytest.approx(true, rel=1e-4)
     else:
@@ -49,8 +51,9 @@ def test_sanitize_removes_negative_channels_and_keeps_luminance_where_possible(r
 def test_desaturate_keeps_the_hue(rgb):
     E = np.array([[rgb]], np.float32)
     for power in (1, 2):
-        found = gamut.desaturate(E, power=power)[0, 0].astype(float)
-        before, after = (one - one.mean() for one in (E[0, 0].astype(float), found))
+        desaturated = gamut.desaturate(E, power=power)[0, 0].astype(float)
+        before = E[0, 0].astype(float) - E[0, 0].astype(float).mean()
+        after = desaturated - desaturated.mean()
         parallel = before @ after
         assert parallel >= 0 or np.abs(after).max() < 1e-4 * np.abs(E).max()
         off = after - before * (parallel / max(before @ before, 1e-30))
@@ -60,11 +63,11 @@ def test_desaturate_keeps_the_hue(rgb):
 def test_a_colour_of_other_primaries_stops_where_its_least_channel_is_0():
     E = np.float32([[[1.0, 0.5, -0.02]]])
     L = luminance_of(E)
-    found = gamut.desaturate(E)
+    desaturated = gamut.desaturate(E)
     t = L / (L + 0.02)
-    assert np.allclose(found, L + t * (E - L), atol=1e-6) and found.min() == pytest.approx(
-        0, abs=1e-7
-    )
+    assert np.allclose(
+        desaturated, L + t * (E - L), atol=1e-6
+    ) and desaturated.min() == pytest.approx(0, abs=1e-7)
 
 
 def luminance_of(E):
@@ -72,7 +75,8 @@ def luminance_of(E):
 
 
 def test_slightly_negative_channels_lose_little_saturation_and_strongly_negative_ones_much():
-    slightly, deeply = np.float32([[[1.0, 0.5, -0.001]]]), np.float32([[[0.3, -0.1, 0.2]]])
+    slightly = np.float32([[[1.0, 0.5, -0.001]]])
+    deeply = np.float32([[[0.3, -0.1, 0.2]]])
     assert (
         saturation(gamut.sanitize(slightly).E)[0, 0] > 0.99
         and saturation(gamut.sanitize(deeply).E)[0, 0] < 0.6
@@ -83,39 +87,42 @@ def test_slightly_negative_channels_lose_little_saturation_and_strongly_negative
 def test_noise_around_black_is_not_strongly_colored():
     noise = 1e-3 * np.random.default_rng(2).standard_normal((60, 80, 3)).astype(np.float32) + 1e-4
     below = noise.min(axis=-1) < 0
-    found = gamut.sanitize(noise)
-    assert found.negative + found.black == np.count_nonzero(below) > 3000
-    kept, cut = (
-        np.median(saturation(E)[below & (noise.max(axis=-1) > 0)]) for E in (found.E, noise.clip(0))
-    )
+    sanitized = gamut.sanitize(noise)
+    assert sanitized.negative + sanitized.black == np.count_nonzero(below) > 3000
+    kept = np.median(saturation(sanitized.E)[below & (noise.max(axis=-1) > 0)])
+    cut = np.median(saturation(noise.clip(0))[below & (noise.max(axis=-1) > 0)])
     assert cut == 1 and kept < 0.6
 
 
 def test_without_a_channel_above_0_a_pixel_is_black_and_a_gray_one_has_no_colour_to_lose():
     assert gamut.sanitize(np.float32([[[-1, -2, 0]]])).E.tolist() == [[[0, 0, 0]]]
-    found = gamut.sanitize(np.float32([[-1, 0, 2]]))
-    assert found.E.tolist() == [[0, 0, 2]] and found.black == 1
+    sanitized = gamut.sanitize(np.float32([[-1, 0, 2]]))
+    assert sanitized.E.tolist() == [[0, 0, 2]] and sanitized.black == 1
 
 
 def test_an_unknown_pixel_is_the_mean_of_its_known_neighbours_in_all_channels():
     E = np.random.default_rng(1).random((6, 7, 3)).astype(np.float32)
     spoiled = E.copy()
-    spoiled[2, 3, 1], spoiled[2, 4, 0], spoiled[0, 0, 2] = np.nan, -np.inf, np.nan
-    found = gamut.sanitize(spoiled)
-    assert found.unknown == 3
-    assert found.infinite == found.negative == found.black == 0
+    spoiled[2, 3, 1] = np.nan
+    spoiled[2, 4, 0] = -np.inf
+    spoiled[0, 0, 2] = np.nan
+    sanitized = gamut.sanitize(spoiled)
+    assert sanitized.unknown == 3
+    assert sanitized.infinite == sanitized.negative == sanitized.black == 0
     around = [E[y, x] for y in (1, 2, 3) for x in (2, 3, 4) if (y, x) not in ((2, 3), (2, 4))]
-    assert np.allclose(found.E[2, 3], np.mean(around, axis=0), atol=1e-6)
-    assert np.allclose(found.E[0, 0], (E[0, 1] + E[1, 0] + E[1, 1]) / 3, atol=1e-6)
+    assert np.allclose(sanitized.E[2, 3], np.mean(around, axis=0), atol=1e-6)
+    assert np.allclose(sanitized.E[0, 0], (E[0, 1] + E[1, 0] + E[1, 1]) / 3, atol=1e-6)
     known = np.isfinite(spoiled).all(axis=-1)
-    assert np.array_equal(found.E[known], E[known])
+    assert np.array_equal(sanitized.E[known], E[known])
 
 
 def test_unknown_regions_become_black_and_infinity_becomes_the_largest_finite_value():
     E = np.full((7, 7), np.nan, np.float32)
     E[0, 0] = 5
-    found = gamut.sanitize(E)
-    assert found.E[1, 1] == pytest.approx(5) and found.E[6, 6] == 0 and found.unknown == 48
+    sanitized = gamut.sanitize(E)
+    assert (
+        sanitized.E[1, 1] == pytest.approx(5) and sanitized.E[6, 6] == 0 and sanitized.unknown == 48
+    )
     bright = gamut.sanitize(np.float32([[1, np.inf, 9, np.inf]]))
     assert bright.E.tolist() == [[1, 9, 9, 9]] and bright.infinite == 2
     assert not gamut.sanitize(np.full((3, 4, 3), np.inf)).E.any(), (
@@ -161,7 +168,8 @@ def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
 
 @pytest.mark.parametrize("primaries", [REC2020, ACES])
 def test_conversion_between_primaries_keeps_white_and_round_trips(primaries):
-    there, back = gamut.conversion_matrix(primaries), gamut.conversion_matrix(gamut.SRGB, primaries)
+    there = gamut.conversion_matrix(primaries)
+    back = gamut.conversion_matrix(gamut.SRGB, primaries)
     assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(
         there @ back, np.eye(3), atol=1e-9
     )
@@ -203,29 +211,37 @@ def test_a_green_that_srgb_lacks_is_shown_less_colourful_and_as_bright(tmp_path)
     ids=["red", "yellow", "green", "blue"],
 )
 def test_a_chart_in_aces_primaries_has_the_colours_that_are_printed_on_it(shared, place, printed):
-    """Shares of the channels; the sRGB values are those that the maker of the chart states."""
-    (y, x), path = place, shared("openexr") / "Carrots.exr"
+    """Channels as fractions of their sum.
+
+    The sRGB values are those that the chart's maker states.
+    """
+    y, x = place
+    path = shared("openexr") / "Carrots.exr"
     true = decode_srgb(np.array(printed) / 255)
-    now, before = (
-        E[y - 4 : y + 5, x - 4 : x + 5].mean(axis=(0, 1))
-        for E in (read_sanitized(path).E, read_exr(path))
-    )
-    off, taken_as_srgb = (np.abs(E / E.sum() - true / true.sum()).max() for E in (now, before))
+    now = read_sanitized(path).E[y - 4 : y + 5, x - 4 : x + 5].mean(axis=(0, 1))
+    before = read_exr(path)[y - 4 : y + 5, x - 4 : x + 5].mean(axis=(0, 1))
+    off = np.abs(now / now.sum() - true / true.sum()).max()
+    taken_as_srgb = np.abs(before / before.sum() - true / true.sum()).max()
     assert off < 0.08 < taken_as_srgb
 
 
 def test_sanitize_removes_the_magenta_from_the_shadows_of_a_real_map(shared):
     path = shared("openexr") / "Desk.exr"
-    raw, found = read_exr(path), read_sanitized(path)
+    raw = read_exr(path)
+    sanitized = read_sanitized(path)
     below = raw.min(axis=-1) < 0
-    assert found.negative + found.black == np.count_nonzero(below) == 9354 and found.unknown == 0
+    assert (
+        sanitized.negative + sanitized.black == np.count_nonzero(below) == 9354
+        and sanitized.unknown == 0
+    )
     lit = below & (raw.max(axis=-1) > 0)
     assert (
-        np.median(saturation(found.E)[lit]) < 0.6 and np.median(saturation(raw.clip(0))[lit]) == 1
+        np.median(saturation(sanitized.E)[lit]) < 0.6
+        and np.median(saturation(raw.clip(0))[lit]) == 1
     )
-    assert np.array_equal(found.E[~below], raw[~below])
+    assert np.array_equal(sanitized.E[~below], raw[~below])
     trusted = lit & (raw @ LUMINANCE > 0.51 * (raw.clip(0) @ LUMINANCE))
-    assert np.allclose(luminance(found.E)[trusted], (raw @ LUMINANCE)[trusted], rtol=1e-3)
+    assert np.allclose(luminance(sanitized.E)[trusted], (raw @ LUMINANCE)[trusted], rtol=1e-3)
 
 
 def test_between_two_whites_bradford_adapts_as_published():

@@ -28,16 +28,16 @@ def test_the_error_of_a_response_is_the_rms_left_by_the_best_factor():
 
 
 def test_each_channel_has_its_own_error_and_one_truth_serves_all():
-    found = np.stack([LINEAR, 1.1 * LINEAR, 1.3 * LINEAR], axis=-1)
-    red, green, blue = metrics.response_rmse(found, LINEAR)
+    curves = np.stack([LINEAR, 1.1 * LINEAR, 1.3 * LINEAR], axis=-1)
+    red, green, blue = metrics.response_rmse(curves, LINEAR)
     assert red < 1e-9 < green < blue
 
 
 def test_levels_outside_10_to_250_do_not_count():
-    found = LINEAR.copy()
-    found[:10] -= 3
-    found[251:] += 3
-    assert np.allclose(metrics.response_rmse(found, LINEAR), 0, atol=1e-9)
+    curve = LINEAR.copy()
+    curve[:10] -= 3
+    curve[251:] += 3
+    assert np.allclose(metrics.response_rmse(curve, LINEAR), 0, atol=1e-9)
 
 
 def test_a_response_of_65536_levels_compares_with_one_of_256():
@@ -78,7 +78,8 @@ def test_a_pixel_twice_too_bright_is_off_by_one_and_the_median_pixel_by_nothing(
 
 
 def test_badly_exposed_pixels_do_not_affect_the_unit():
-    E, well = truth(), np.zeros((20, 30), bool)
+    E = truth()
+    well = np.zeros((20, 30), bool)
     well[:5] = True
     wrong = np.where(well[..., None], E, 7 * E)
     assert np.allclose(metrics.radiance_errors(wrong, E, well)[well], 0, atol=1e-6)
@@ -101,9 +102,9 @@ def test_maps_that_cannot_be_compared_raise_an_error():
 
 def test_offsets_are_compared_up_to_the_shift_that_most_frames_share():
     true = np.array([[0, 0], [3, -2], [1, 1], [5, 5]])
-    found = true + [2, -7]
-    found[3] += [0, 1]
-    assert metrics.offset_errors(found, true).tolist() == [[0, 0], [0, 0], [0, 0], [0, 1]]
+    offsets = true + [2, -7]
+    offsets[3] += [0, 1]
+    assert metrics.offset_errors(offsets, true).tolist() == [[0, 0], [0, 0], [0, 0], [0, 1]]
 
 
 def test_offsets_that_do_not_pair_raise_an_error():

@@ -8,9 +8,9 @@ from hdrlab.core.picture import gray, statistics
 
 def test_a_half_black_half_white_image_has_an_entropy_of_one_bit():
     picture = np.repeat(np.uint8([0, 255]), 50).reshape(10, 10)
-    found = statistics(picture)
-    assert found == pytest.approx((0.5, 0.5, 127.5, 127.5, 1.0))
-    assert statistics(np.stack([picture] * 3, axis=-1)) == pytest.approx(found, abs=1e-4)
+    result = statistics(picture)
+    assert result == pytest.approx((0.5, 0.5, 127.5, 127.5, 1.0))
+    assert statistics(np.stack([picture] * 3, axis=-1)) == pytest.approx(result, abs=1e-4)
 
 
 def test_the_entropy_is_8_bits_if_every_level_occurs_once_and_0_for_a_constant():
@@ -19,8 +19,8 @@ def test_the_entropy_is_8_bits_if_every_level_occurs_once_and_0_for_a_constant()
 
 
 def test_a_pixel_is_white_if_any_channel_is_255_and_black_if_all_are_0():
-    found = statistics(np.uint8([[[255, 0, 0], [0, 0, 0], [0, 0, 1], [254, 254, 254]]]))
-    assert found.white == 0.25 and found.black == 0.25
+    result = statistics(np.uint8([[[255, 0, 0], [0, 0, 0], [0, 0, 1], [254, 254, 254]]]))
+    assert result.white == 0.25 and result.black == 0.25
 
 
 def test_gray_weighs_the_channels_as_luminance_does():

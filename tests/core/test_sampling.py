@@ -78,14 +78,16 @@ def test_a_grid_as_large_as_the_picture_is_the_picture():
 def test_masked_pixels_are_not_sampled(way):
     images = np.clip(frames(), 0, 200)
     valid = np.ones(images.shape, bool)
-    images[1, 5:20], valid[1, 5:20] = 255, False
+    images[1, 5:20] = 255
+    valid[1, 5:20] = False
     assert 255 not in way(images, 200, valid=valid) and 255 in way(images, 200)
 
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_mask_that_leaves_nothing_raises_an_error(way):
     valid = np.ones((3, 30, 40), bool)
-    valid[0, :15], valid[2, 15:] = False, False
+    valid[0, :15] = False
+    valid[2, 15:] = False
     with pytest.raises(ValueError, match="masks leave none"):
         way(frames(), 10, valid=valid)
 

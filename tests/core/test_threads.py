@@ -63,7 +63,7 @@ def test_a_large_picture_is_the_same_in_bands(monkeypatch):
     assert np.array_equal(Ld, L / (1 + L))
     for way in colour.WAYS:
         halves = [
-            colour.render(*(one[part] for one in (E, L, Ld)), way=way)
+            colour.render(*(array[part] for array in (E, L, Ld)), way=way)
             for part in (np.s_[:400], np.s_[400:])
         ]
         assert np.array_equal(colour.render(E, L, Ld, way=way), np.concatenate(halves))
@@ -89,7 +89,7 @@ def test_work_on_a_small_image_runs_in_the_calling_thread():
 
 
 def test_an_abandoned_generator_does_not_wait_for_its_threads(monkeypatch):
-    """Garbage collection may end it while another thread starts, where waiting would never end."""
+    """The garbage collector may close it while another thread starts; waiting then would never end."""
     monkeypatch.setattr(threads, "THREADS", 2)
     may_end = threading.Event()
 

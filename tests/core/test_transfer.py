@@ -19,7 +19,10 @@ def test_the_transfer_of_a_photo_to_itself_is_the_identity():
 def test_for_uniform_light_the_transfer_of_a_linear_camera_is_a_line_and_the_literal_one_is_offset(
     k,
 ):
-    """A linear camera, light evenly spread: T = k m, where the literal one has k m + (k - 1) / 2."""
+    """A linear camera and evenly distributed light: T = k m.
+
+    The paper's literal method gives k m + (k - 1) / 2.
+    """
     light = (np.arange(200_000) + 0.5) / 200_000 * 240
     h = [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1 / k, 1)]
     m = np.arange(2, 220 // k)
@@ -39,7 +42,8 @@ def test_a_transfer_never_falls_and_does_not_depend_on_the_pixel_count(seed, spa
 
 def test_levels_that_no_pixel_has_are_transferred_to_nan():
     h_A, h_B = np.zeros((2, 256), int)
-    h_A[40:90], h_B[80:180] = 10, 5
+    h_A[40:90] = 10
+    h_B[80:180] = 5
     T = transfer.brightness_transfer(h_A, h_B)
     assert np.isnan(T[:40]).all() and np.isnan(T[90:]).all()
     assert np.allclose(T[40:90], 2 * np.arange(40, 90) + 0.5)
@@ -54,7 +58,8 @@ def test_invalid_histograms_raise_an_error(bad):
 
 def test_histograms_count_each_channel_over_the_pixels_that_are_valid_in_every_frame():
     images = np.zeros((2, 2, 2, 3), np.uint8)
-    images[0, ..., 1], images[1, 0, 0] = 7, 9
+    images[0, ..., 1] = 7
+    images[1, 0, 0] = 9
     valid = np.ones((2, 2, 2), bool)
     valid[1, 1, 1] = False
     h = transfer.histograms(images, valid)

@@ -67,13 +67,16 @@ def test_make_monotone_levels_falls_and_keeps_a_rising_curve():
 
 
 def test_the_second_differences_of_a_line_are_0_and_those_of_a_parabola_its_weights():
-    w, z = np.array([0.0, 1, 3, 2, 0]), np.arange(5.0)
+    w = np.array([0.0, 1, 3, 2, 0])
+    z = np.arange(5.0)
     assert np.allclose(weights.second_differences(w, 10) @ (3 * z + 1), 0)
     assert np.allclose(weights.second_differences(w, 10) @ z**2, [20, 60, 40])
 
 
 def test_snr_weights_near_the_top_use_the_slope_up_to_the_top():
-    """Of f = z^2 the slope from a to b is a + b: 250 + 255 for level 254, whose window ends at 255."""
+    """The slope of f = z^2 from a to b is a + b: for level 254, whose window ends at 255, it is 250 +
+    255.
+    """
     w = weights.snr(2 * np.log(np.maximum(np.arange(256), 1e-3) / 255))
     slope = {254: 250 + 255, 253: 249 + 255, 128: 124 + 132}
     share = {z: z**2 / across for z, across in slope.items()}

@@ -9,7 +9,8 @@ from hdrlab.errors import InputError
 
 def test_the_filter_is_the_mean_by_weights_in_space_and_range():
     v = np.random.default_rng(3).random((7, 9))
-    sigma_s, sigma_r = 1.3, 0.4
+    sigma_s = 1.3
+    sigma_r = 0.4
     y, x = np.indices(v.shape)
     mean = np.empty_like(v)
     k = np.empty_like(v)

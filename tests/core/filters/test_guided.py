@@ -14,19 +14,21 @@ def rng():
 
 
 def by_definition(I, p, radius, epsilon):  # noqa: E741
-    """Return q, each window's line fitted by least squares, each pixel's lines averaged."""
+    """Fit a line in each window by least squares, and average the lines of each pixel."""
     H, W = I.shape
-    lines, q = np.zeros((H, W, 2)), np.zeros((H, W))
+    lines = np.zeros((H, W, 2))
+    q = np.zeros((H, W))
 
     def window(y, x):
         return np.s_[max(y - radius, 0) : y + radius + 1, max(x - radius, 0) : x + radius + 1]
 
     for y in range(H):
         for x in range(W):
-            seen, asked = I[window(y, x)].ravel(), p[window(y, x)].ravel()
-            A = np.stack([seen, np.ones_like(seen)], axis=1)
-            pull = np.diag([epsilon * seen.size, 0])  # eps a^2, once for each pixel
-            lines[y, x] = np.linalg.solve(A.T @ A + pull, A.T @ asked)
+            guide = I[window(y, x)].ravel()
+            filtered_values = p[window(y, x)].ravel()
+            A = np.stack([guide, np.ones_like(guide)], axis=1)
+            pull = np.diag([epsilon * guide.size, 0])  # eps a^2, once for each pixel
+            lines[y, x] = np.linalg.solve(A.T @ A + pull, A.T @ filtered_values)
     for y in range(H):
         for x in range(W):
             a, b = lines[window(y, x)].reshape(-1, 2).mean(axis=0)
@@ -54,14 +56,16 @@ def test_a_flat_image_is_not_changed(radius, epsilon, level):
 
 
 def test_a_level_added_to_the_picture_is_added_to_the_base(rng):
-    I, knobs = rng.normal(size=(20, 30)), {"radius": 3, "epsilon": 0.2}  # noqa: E741
+    I = rng.normal(size=(20, 30))  # noqa: E741
+    knobs = {"radius": 3, "epsilon": 0.2}
     assert np.allclose(guided.guided(I + 7, **knobs), guided.guided(I, **knobs) + 7)
 
 
 def test_epsilon_is_in_squares_of_the_unit(rng):
     I = rng.normal(size=(20, 30))  # noqa: E741
-    one, ten = (guided.guided(k * I, radius=3, epsilon=0.2 * k * k) for k in (1, 10))
-    assert np.allclose(ten, 10 * one)
+    in_units = guided.guided(I, radius=3, epsilon=0.2)
+    in_tenths = guided.guided(10 * I, radius=3, epsilon=0.2 * 10**2)
+    assert np.allclose(in_tenths, 10 * in_units)
 
 
 def test_a_large_epsilon_leaves_two_means_and_a_small_one_the_picture(rng):
@@ -73,14 +77,15 @@ def test_a_large_epsilon_leaves_two_means_and_a_small_one_the_picture(rng):
 
 def test_a_step_is_kept_and_a_ripple_is_removed_except_beside_the_step():
     x = np.arange(200)
-    plains, ripple = np.where(x < 100, 0.0, 2.0), 0.1 * np.sin(x / 2)
+    plains = np.where(x < 100, 0.0, 2.0)
+    ripple = 0.1 * np.sin(x / 2)
     left = guided.guided((plains + ripple) * np.ones((40, 1)), radius=8, epsilon=0.04)[20] - plains
     assert np.abs(left[20:80]).max() < 0.02 and np.abs(left).max() < 0.1
     assert np.abs(left[85:115]).max() > 0.05
 
 
 def test_the_edge_of_another_guide_is_taken_over(rng):
-    """Flash and no flash: noise goes, and the guide's edge comes."""
+    """A flash photo as guide: the noise disappears, and the guide's edge appears."""
     I = np.where(np.arange(60) < 30, 0.0, 1.0) * np.ones((40, 1))  # noqa: E741
     p = 3 * I + rng.normal(0, 0.3, I.shape)
     q = guided.guided(I, p, radius=5, epsilon=1e-3)
@@ -119,5 +124,5 @@ def test_small_differences_of_large_numbers_are_filtered_like_those_of_small_one
     small = rng.normal(0, 1e-3, (30, 40))
     knobs = {"radius": 3, "epsilon": 1e-8}
     expected = guided.guided(small, **knobs)
-    found = guided.guided(1e6 + small, **knobs) - 1e6
-    assert np.abs(found - expected).max() < 1e-5  # 0.8e-3 if the squares cancel
+    result = guided.guided(1e6 + small, **knobs) - 1e6
+    assert np.abs(result - expected).max() < 1e-5  # 0.8e-3 if the squares cancel

@@ -11,12 +11,12 @@ SHAPES = [(1, 1), (1, 7), (5, 1), (2, 3), (16, 16), (33, 50), (47, 31)]
 
 
 def field(shape, seed=0, dtype=np.float64):
-    """Return a gradient field that is no picture's gradient, edges included."""
+    """Return a gradient field that is not the gradient of any image, at the borders, too."""
     return np.random.default_rng(seed).standard_normal((2, *shape)).astype(dtype)
 
 
 def second_difference(n):
-    """Return the matrix of u(i + 1) - 2 u(i) + u(i - 1) whose ends have but one neighbour."""
+    """Return the matrix of u(i + 1) - 2 u(i) + u(i - 1); both ends have only one neighbor."""
     middle = -2 * np.ones(n)
     middle[[0, -1]] += 1
     return diags_array([np.ones(n - 1), middle, np.ones(n - 1)], offsets=[-1, 0, 1])
@@ -35,7 +35,8 @@ def test_the_divergence_of_one_step_is_a_source_and_a_sink():
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_divergence_is_minus_the_transpose_of_gradient(shape):
-    u, G = np.random.default_rng(1).standard_normal(shape), field(shape)
+    u = np.random.default_rng(1).standard_normal(shape)
+    G = field(shape)
     assert np.vdot(poisson.gradient(u), G) == pytest.approx(
         -np.vdot(u, poisson.divergence(G)), abs=1e-9
     )
@@ -77,7 +78,10 @@ def test_the_residual_is_below_1e_5_in_a_picture_of_half_a_megapixel():
 
 @pytest.mark.parametrize("shape", [(2, 3), (33, 50), (48, 31)])
 def test_the_solution_is_that_of_a_sparse_direct_solver(shape):
-    """Of the matrix with one pixel held, as a constant is free; the means are compared as 0."""
+    """The solution is unique up to a constant.
+
+    The direct solver fixes one pixel, so we compare solutions of mean 0.
+    """
     h, w = shape
     A = kron(second_difference(h), eye_array(w)) + kron(eye_array(h), second_difference(w))
     f = poisson.divergence(field(shape))
@@ -87,10 +91,12 @@ def test_the_solution_is_that_of_a_sparse_direct_solver(shape):
 
 
 def test_the_solution_has_the_closest_gradients_of_all_images():
-    G, rng = field((20, 30)), np.random.default_rng(3)
+    G = field((20, 30))
+    rng = np.random.default_rng(3)
     u = poisson.solve(poisson.divergence(G))
     inside = np.ones_like(G)
-    inside[0, -1], inside[1, :, -1] = 0, 0
+    inside[0, -1] = 0
+    inside[1, :, -1] = 0
 
     def distance(u):
         return np.sum(inside * (poisson.gradient(u) - G) ** 2)

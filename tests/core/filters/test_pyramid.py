@@ -17,7 +17,8 @@ def noise(shape, seed=0):
 
 
 def test_a_level_is_the_plain_sum_over_the_kernel():
-    image, w = noise((9, 12)), np.array([1, 4, 6, 4, 1]) / 16
+    image = noise((9, 12))
+    w = np.array([1, 4, 6, 4, 1]) / 16
     around = np.pad(image, 2, mode="reflect")
     plain = [
         [w @ around[2 * i : 2 * i + 5, 2 * j : 2 * j + 5] @ w for j in range(6)] for i in range(5)
@@ -105,5 +106,5 @@ def test_shapes_that_do_not_fit_raise_an_error():
 @pytest.mark.parametrize("build", [pyramid.laplacian, fast.laplacian])
 @pytest.mark.parametrize("levels", [np.inf, 10**9])
 def test_a_pyramid_ends_at_one_pixel_at_the_latest(build, levels):
-    found = build(np.ones((3, 5), np.float32), levels)
-    assert [level.shape for level in found] == [(3, 5), (2, 3), (1, 2), (1, 1)]
+    levels_built = build(np.ones((3, 5), np.float32), levels)
+    assert [level.shape for level in levels_built] == [(3, 5), (2, 3), (1, 2), (1, 1)]

@@ -7,8 +7,11 @@ from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, 
 
 
 def test_glare_equals_the_double_sum_and_conserves_light_inside_the_frame():
-    """K is 0 in its middle and beyond the frame, and its sum is 1: against the double sum."""
-    height, width, power, core = 5, 7, 2.0, 1.5
+    """K is 0 at its center and outside the frame, and its sum is 1."""
+    height = 5
+    width = 7
+    power = 2.0
+    core = 1.5
     E = np.random.default_rng(2).random((height, width)).astype(np.float32)
     dy, dx = np.mgrid[1 - height : height, 1 - width : width]
     K = (1 + (dy**2 + dx**2) / core**2) ** (-power / 2)
