@@ -30,9 +30,10 @@ def shoot(E, moves, *, stops=2.0, response="film", bits=8, rng=1, count=None):
     return taken, hand_motion.frame_homographies(moves, E.shape)
 
 
-def off(found, truth, shape=SHAPE):
+def off(homographies, truth, shape=SHAPE):
     """Return the worst error of moves at the corners, pixels, relative to the last frame."""
-    ours, theirs = (np.linalg.inv(one[-1]) @ one for one in (found, truth))
+    ours = np.linalg.inv(homographies[-1]) @ homographies
+    theirs = np.linalg.inv(truth[-1]) @ truth
     return float(warp.corner_distance(ours, theirs, shape).max())
 
 
@@ -44,8 +45,9 @@ def test_two_exposures_come_to_one_scale(room, response):
     taken = camera.shoot(
         room, camera.times_around(room, 2, stops=2), camera.Camera(response=response)
     )
-    dark, bright = (image[..., 1] for image in taken.images)
-    (X, *_) = light.pair(bright, dark, *(np.exp(true_g(response)) * k for k in (1.0, 4.0)))
+    dark, bright = taken.images[..., 1]
+    exposures = np.exp(true_g(response))
+    X = light.pair(bright, dark, exposures, 4.0 * exposures)[0]
     kept = np.isfinite(X).all(axis=0)
     assert kept.mean() > 0.3
     assert np.median(np.abs(X[0][kept] / X[1][kept] - 1)) < 0.03
@@ -64,12 +66,14 @@ def test_without_times_the_exposure_ratio_is_estimated_from_histograms(room, res
 
 def test_pixels_that_one_photo_does_not_measure_are_discarded_in_both(room):
     taken = camera.shoot(room, camera.times_around(room, 2, stops=3))
-    dark, bright = (image[..., 1] for image in taken.images)
-    X = light.pair(bright, dark, *(np.exp(true_g()) * k for k in (1.0, 8.0)))[0]
+    dark, bright = taken.images[..., 1]
+    exposures = np.exp(true_g())
+    X = light.pair(bright, dark, exposures, 8.0 * exposures)[0]
     assert np.all(np.isnan(X[0][bright > 250])) and np.all(np.isnan(X[1][dark < 5]))
-    low, high = (np.float32(np.exp(true_g()[z]) * k) for z, k in ((5, 8.0), (250, 1.0)))
+    low = np.float32(8.0 * exposures[5])
+    high = np.float32(exposures[250])
     for x, Z, k in zip(X, (bright, dark), (1.0, 8.0), strict=True):
-        light_ = (np.exp(true_g()) * k).astype(np.float32)[Z]
+        light_ = (k * exposures).astype(np.float32)[Z]
         assert np.array_equal(np.isfinite(x), (light_ > low) & (light_ < high))
 
 
@@ -86,7 +90,8 @@ def test_the_highest_peak_is_the_shift(dy, dx, seed):
 
 def test_the_error_is_zero_for_equal_light_and_does_not_depend_on_its_unit(room):
     L = room[..., 1] + np.float32(0.01)
-    X, p = np.stack([L, L]), light.lattice(SHAPE)
+    X = np.stack([L, L])
+    p = light.lattice(SHAPE)
     assert light.error(light.differences(X, np.eye(3), p)) == 0
     moved = warp.as_homographies([[1, 2]])[0]
     e = [light.error(light.differences(X * k, moved, p)) for k in np.float32([1, 100])]
@@ -149,23 +154,23 @@ def test_gray_and_colour_8_and_16_bits(room, bits, colours):
 def test_four_frames_are_aligned_to_the_middle_one(room):
     moves = hand_motion.shake(4, SHAPE, radius=6, degrees=1.5, rng=3)
     taken, truth = shoot(room, moves)
-    found = cerman.align(taken.images, taken.times, true_g())
-    assert np.array_equal(found[2], np.eye(3))
-    assert off(np.roll(found, -3, axis=0), np.roll(truth, -3, axis=0)) < 0.5
+    homographies = cerman.align(taken.images, taken.times, true_g())
+    assert np.array_equal(homographies[2], np.eye(3))
+    assert off(np.roll(homographies, -3, axis=0), np.roll(truth, -3, axis=0)) < 0.5
 
 
 def test_the_order_of_frames_does_not_change_their_homographies(room):
     taken, _ = shoot(room, hand_motion.shake(3, SHAPE, radius=5, degrees=1, rng=2))
     order = [2, 0, 1]
-    one = cerman.align(taken.images, taken.times, true_g())
+    homographies = cerman.align(taken.images, taken.times, true_g())
     other = cerman.align(taken.images[order], taken.times[order], true_g())
-    assert np.allclose(other, one[order])
+    assert np.allclose(other, homographies[order])
 
 
 def test_frames_from_a_tripod_are_not_moved(room):
     taken, _ = shoot(room, np.tile(np.eye(3), (2, 1, 1)))
-    found = cerman.align(taken.images, taken.times, true_g())
-    assert np.all(warp.corner_distance(found, np.eye(3), SHAPE) < 0.1)
+    homographies = cerman.align(taken.images, taken.times, true_g())
+    assert np.all(warp.corner_distance(homographies, np.eye(3), SHAPE) < 0.1)
 
 
 def test_a_single_frame_is_not_moved(room):
@@ -188,7 +193,7 @@ def test_small_frames_are_aligned_without_an_error(shape):
     ],
 )
 def test_invalid_images_and_times_raise_an_error(images, times):
-    for verb in (cerman.align, lambda *given: list(cerman.align_steps(*given))):
+    for verb in (cerman.align, lambda *arguments: list(cerman.align_steps(*arguments))):
         with pytest.raises(InputError):
             verb(images, times, true_g())
 

@@ -12,12 +12,14 @@ from hdrlab.errors import InputError
 
 
 def plain(fixed, moving, offset):
-    """Return (bits that differ, bits compared) pixel by pixel; each photograph is (bitmap, exclusion)."""
+    """Count pixel by pixel the bits that differ and the bits compared; a photo is (bitmap, exclusion)."""
     rows, columns = fixed[0].shape
-    differ = compared = 0
+    differ = 0
+    compared = 0
     for y in range(rows):
         for x in range(columns):
-            v, u = y - offset[0], x - offset[1]
+            v = y - offset[0]
+            u = x - offset[1]
             if 0 <= v < rows and 0 <= u < columns and fixed[1][y, x] and moving[1][v, u]:
                 compared += 1
                 differ += fixed[0][y, x] != moving[0][v, u]
@@ -227,7 +229,8 @@ def histogram(codes):
 
 
 def test_the_percentile_is_the_median_if_the_median_divides_both_photos():
-    dark, bright = histogram(np.arange(20, 120)), histogram(np.arange(120, 240))
+    dark = histogram(np.arange(20, 120))
+    bright = histogram(np.arange(120, 240))
     assert mtb.percentile(dark, bright) == 0.5
 
 

@@ -66,17 +66,20 @@ def test_a_step_ahead_with_a_tilted_camera_is_found():
     taken, truth = shoot(
         E, hand_motion.shake(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
     )
-    found = homography.align(taken.images, taken.times, true_g())
+    homographies = homography.align(taken.images, taken.times, true_g())
     truth = np.linalg.inv(truth[-1]) @ truth
-    assert warp.corner_distance(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
-    (one,) = alignment.register(taken.images, "homography").pairs
-    assert one.reliable and one.confidence > 0.6
+    assert (
+        warp.corner_distance(np.linalg.inv(homographies[-1]) @ homographies, truth, E.shape).max()
+        < 1
+    )
+    (pair,) = alignment.register(taken.images, "homography").pairs
+    assert pair.reliable and pair.confidence > 0.6
 
 
 def test_photos_without_feature_points_are_not_moved_and_reported():
     images = np.stack([np.full((90, 120), level, np.uint8) for level in (60, 120)])
-    (one,) = alignment.register(images, "homography").pairs
-    assert np.array_equal(one.H, np.eye(3)) and not one.reliable
+    (pair,) = alignment.register(images, "homography").pairs
+    assert np.array_equal(pair.H, np.eye(3)) and not pair.reliable
 
 
 # the choice
@@ -108,15 +111,15 @@ def test_unrelated_photos_are_not_moved(seed):
 def test_auto_only_runs_mtb_if_shifts_align_the_photos(room, moves, monkeypatch):
     taken, _ = shoot(room, moves)
     monkeypatch.setattr(alignment, "improve", None)  # nothing is searched by light
-    found = alignment.register(taken.images, "auto").homographies
-    assert np.array_equal(found, alignment.register(taken.images, "mtb").homographies)
+    homographies = alignment.register(taken.images, "auto").homographies
+    assert np.array_equal(homographies, alignment.register(taken.images, "mtb").homographies)
 
 
 def test_auto_is_never_worse_than_no_alignment(room):
     for seed in range(4):
         taken, _ = shoot(room, hand_motion.shake(2, SHAPE, radius=3, degrees=6, zoom=0.1, rng=seed))
-        (one,) = alignment.register(taken.images, "auto").pairs
-        assert one.after <= one.before
+        (pair,) = alignment.register(taken.images, "auto").pairs
+        assert pair.after <= pair.before
 
 
 def test_match_points_returns_at_most_max_points():
@@ -180,15 +183,19 @@ def test_resampling_does_not_average_clipped_with_unclipped_pixels():
 def test_resampling_does_not_average_masked_pixels():
     images = np.full((2, 20, 24), 90, np.uint8)
     valid = np.ones(images.shape, bool)
-    images[0, :, 12], valid[0, :, 12] = 200, False
+    images[0, :, 12] = 200
+    valid[0, :, 12] = False
     moved, kept = resample.photographs(images, [[0, 0.5], [0, 0]], valid=valid)
     assert kept[1].all() and not kept[0].all() and np.all(moved[0][kept[0]] == 90)
 
 
 def test_homographies_that_do_not_fit_the_images_raise_an_error():
     images = np.zeros((2, 20, 24), np.uint8)
-    for moves, said in (([[0, 0.5]], "expected 2 homographies"), ([[0, 0], [0, 99.5]], "overlap")):
-        with pytest.raises(ValueError, match=said):
+    for moves, message in (
+        ([[0, 0.5]], "expected 2 homographies"),
+        ([[0, 0], [0, 99.5]], "overlap"),
+    ):
+        with pytest.raises(ValueError, match=message):
             resample.photographs(images, moves)
 
 
@@ -197,17 +204,17 @@ def test_homographies_that_do_not_fit_the_images_raise_an_error():
 
 @pytest.fixture(scope="module")
 def turned(room):
-    """Three photographs of a hand that turned, and how."""
+    """Three photos, between which the camera rotated, and its rotations."""
     return shoot(room, hand_motion.shake(3, SHAPE, **HAND))
 
 
-def map_error(found, room, taken):
+def map_error(assembly, room, taken):
     """Return the median relative error of a map on edges, where misalignment shows."""
-    rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
+    rows, columns = warp.common_rectangle(assembly.homographies, taken.images.shape[1:3])
     scene = hand_motion.views(room, hand_motion.shake(3, SHAPE, **HAND))[1][rows, columns]
     slope = np.hypot(*np.gradient(np.log(scene[..., 1] + 1e-4)))
-    well = (found.quality == Quality.MEASURED) & (slope > np.quantile(slope, 0.8))
-    ratio = found.E[well] / scene[well]
+    well = (assembly.quality == Quality.MEASURED) & (slope > np.quantile(slope, 0.8))
+    ratio = assembly.E[well] / scene[well]
     return np.median(np.abs(ratio / np.median(ratio, axis=0) - 1))
 
 
@@ -222,10 +229,12 @@ def test_correcting_rotation_halves_the_error_of_the_map(room, turned):
 
 def test_the_assembly_holds_the_homographies_and_a_note_on_the_method(turned):
     taken, truth = turned
-    found = next(pipeline.assemble_steps(taken, align="auto"))
+    assembly = next(pipeline.assemble_steps(taken, align="auto"))
     relative = np.linalg.inv(truth[1]) @ truth
-    assert warp.corner_distance(found.homographies, relative, taken.images.shape[1:3]).max() < 0.5
-    assert found.offsets.dtype == np.int64 and 'aligned by "rotation"' in found.details[0]
+    assert (
+        warp.corner_distance(assembly.homographies, relative, taken.images.shape[1:3]).max() < 0.5
+    )
+    assert assembly.offsets.dtype == np.int64 and 'aligned by "rotation"' in assembly.details[0]
     still = next(pipeline.assemble_steps(taken, align="mtb"))
     assert np.array_equal(still.homographies, warp.as_homographies(mtb.align(taken.images)))
 
@@ -233,10 +242,10 @@ def test_the_assembly_holds_the_homographies_and_a_note_on_the_method(turned):
 def test_your_own_align_function_may_return_homographies(turned):
     taken, truth = turned
     moves = np.linalg.inv(truth[1]) @ truth
-    found = next(pipeline.assemble_steps(taken, align=lambda images: moves))
+    assembly = next(pipeline.assemble_steps(taken, align=lambda images: moves))
     assert (
-        np.allclose(found.homographies, moves)
-        and found.bracket.images.shape[1] < taken.images.shape[1]
+        np.allclose(assembly.homographies, moves)
+        and assembly.bracket.images.shape[1] < taken.images.shape[1]
     )
 
 
@@ -244,11 +253,11 @@ def test_masks_are_warped_with_their_photos(turned):
     taken, _ = turned
     valid = np.ones(taken.images.shape[:3], bool)
     valid[0, :, :40] = False
-    found = next(
+    assembly = next(
         pipeline.assemble_steps(bracket(taken.images, taken.times, valid=valid), align="cerman")
     )
-    assert found.bracket.valid.shape == found.bracket.images.shape[:3]
-    assert not found.bracket.valid[0].all() and found.bracket.valid[1:].all()
+    assert assembly.bracket.valid.shape == assembly.bracket.images.shape[:3]
+    assert not assembly.bracket.valid[0].all() and assembly.bracket.valid[1:].all()
 
 
 def test_photos_of_two_scenes_give_a_warning(room):
@@ -260,13 +269,13 @@ def test_photos_of_two_scenes_give_a_warning(room):
     images = [
         camera.shoot(E, [t]).images[0] for E, t in zip((room[:, :219], other), times, strict=True)
     ]
-    found = next(
+    assembly = next(
         pipeline.assemble_steps(
             bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman"
         )
     )
-    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in found.doubts)
-    assert found.homographies.shape == (2, 3, 3) and MIN_CONFIDENCE == 0.3
+    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in assembly.doubts)
+    assert assembly.homographies.shape == (2, 3, 3) and MIN_CONFIDENCE == 0.3
 
 
 # real photographs
@@ -276,22 +285,27 @@ def test_the_arch_is_registered_to_the_measured_shifts_without_rotation(photogra
     taken = photographs("stlouis_arch")
     small = taken.images[:, ::4, ::4]  # shifts of 1, 7.5 and 2 pixels at full size
     g = registration.find_provisional_response(replace(taken, images=small), "auto")
-    found = alignment.register(small, "cerman", times=taken.times, g=g).pairs
-    across = np.abs([one.offset[1] for one in found])
+    pairs = alignment.register(small, "cerman", times=taken.times, g=g).pairs
+    across = np.abs([pair.offset[1] for pair in pairs])
     assert np.all(np.abs(across - np.array([1, 7.5, 2]) / 4) < 0.35)
     assert all(
-        abs(one.offset[0]) < 0.4 and abs(one.degrees) < 0.1 and one.confidence > 0.6
-        for one in found
+        abs(pair.offset[0]) < 0.4 and abs(pair.degrees) < 0.1 and pair.confidence > 0.6
+        for pair in pairs
     )
 
 
 def test_different_viewpoints_fit_better_by_homographies_than_by_rotations(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(6)) for path in paths])
-    turned, tilted = (alignment.register(images, way).pairs for way in ("cerman", "homography"))
-    better = [one.after < other.after for one, other in zip(tilted, turned, strict=True)]
-    assert sum(better) >= 4 and all(one.after <= one.before for one in tilted)
-    assert np.mean([one.after for one in tilted]) < 0.5 * np.mean([one.before for one in tilted])
+    turned = alignment.register(images, "cerman").pairs
+    tilted = alignment.register(images, "homography").pairs
+    better = [
+        pair.after < rotated_pair.after for pair, rotated_pair in zip(tilted, turned, strict=True)
+    ]
+    assert sum(better) >= 4 and all(pair.after <= pair.before for pair in tilted)
+    assert np.mean([pair.after for pair in tilted]) < 0.5 * np.mean(
+        [pair.before for pair in tilted]
+    )
     assert not all(
-        one.reliable for one in tilted
+        pair.reliable for pair in tilted
     )  # depth, and a pair that shares little: this is told

@@ -9,7 +9,7 @@ from hdrlab.align.shift import crop, shift
 
 
 def views(offsets, shape=(40, 50)):
-    """Return photographs of one scene, so placed that `offsets` lay them on each other."""
+    """Return photos of one scene that `offsets` aligns."""
     scene = np.random.default_rng(3).integers(0, 256, (100, 110, *shape[2:]), dtype=np.uint8)
     rows, columns = shape[:2]
     return np.stack(
