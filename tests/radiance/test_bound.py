@@ -13,7 +13,7 @@ B = np.log([1.0, 4.0, 16.0])
 
 
 def answer(*levels, shown=(True, True, True)):
-    """Return E and flag of one pixel of three frames, 1, 4 and 16 seconds."""
+    """Return the radiance and the flag of one pixel in three frames of 1, 4 and 16 seconds."""
     E, flags = bound(np.array(levels)[:, None], B, G, TOP, np.array(shown)[:, None])
     return E[0], flags[0]
 
@@ -34,8 +34,8 @@ def answer(*levels, shown=(True, True, True)):
     ],
 )
 def test_the_tightest_bound_of_the_frames_that_show_a_pixel_is_taken(levels, shown, E, flag):
-    found, quality = answer(*levels, shown=np.array(shown, bool))
-    assert np.isclose(found, E, rtol=1e-12) and quality == flag
+    bound, quality = answer(*levels, shown=np.array(shown, bool))
+    assert np.isclose(bound, E, rtol=1e-12) and quality == flag
 
 
 @given(st.lists(st.sampled_from([0, 250, 255]), min_size=3, max_size=3))

@@ -41,9 +41,11 @@ def test_glare_adds_no_light_and_keeps_most_of_it_in_the_frame():
 
 def test_adding_glare_is_linear():
     rng = np.random.default_rng(1)
-    one, two = rng.random((2, 20, 30, 3)).astype(np.float32)
-    both = lens.add_glare(one + 3 * two)
-    assert np.allclose(both, lens.add_glare(one) + 3 * lens.add_glare(two), rtol=1e-4, atol=1e-5)
+    first, second = rng.random((2, 20, 30, 3)).astype(np.float32)
+    both = lens.add_glare(first + 3 * second)
+    assert np.allclose(
+        both, lens.add_glare(first) + 3 * lens.add_glare(second), rtol=1e-4, atol=1e-5
+    )
 
 
 def test_a_clear_lens_does_not_change_the_image(room):
@@ -70,26 +72,27 @@ def test_an_invalid_glare_spread_raises_an_error(spread):
 @pytest.mark.parametrize("power", [2.0, 2.5, 3.0])
 def test_glare_is_estimated_and_removed_within_5_percent(room, power):
     F = lens.add_glare(room, GlareSpread(0.1, power))
-    found = flare.remove_glare(F)
+    result = flare.remove_glare(F)
     affected = (1 - 0.9 * room / F).max(axis=-1) > 0.05
-    before, after = (np.abs(one / room - 1).max(axis=-1)[affected] for one in (F, found.E))
-    assert found.spread.power == power and found.spread.share == pytest.approx(0.1, rel=0.05)
+    before = np.abs(F / room - 1).max(axis=-1)[affected]
+    after = np.abs(result.E / room - 1).max(axis=-1)[affected]
+    assert result.spread.power == power and result.spread.share == pytest.approx(0.1, rel=0.05)
     assert np.median(before) > 0.04 and np.median(after) < 0.01 and np.mean(after < 0.05) > 0.9
 
 
 def test_glare_of_a_known_lens_is_removed_within_a_tenth_of_a_percent(room):
     spread = GlareSpread(0.08, 2.25)
     F = lens.add_glare(room, spread)
-    found = flare.remove_glare(F, spread=spread, part=1e-6)
-    assert np.quantile(np.abs(found.E / room - 1), 0.99) < 1e-3
+    result = flare.remove_glare(F, spread=spread, part=1e-6)
+    assert np.quantile(np.abs(result.E / room - 1), 0.99) < 1e-3
 
 
 @pytest.mark.parametrize("name", scenes.PLACES)
 def test_a_scene_without_glare_is_not_changed(name):
     E = scenes.layers(name, (128, 192)).radiance
-    found = flare.remove_glare(E)
-    assert np.array_equal(found.E, E) and not found.region.any() and found.spread.share == 0
-    assert "no veiling glare" in flare.note(found)
+    result = flare.remove_glare(E)
+    assert np.array_equal(result.E, E) and not result.region.any() and result.spread.share == 0
+    assert "no veiling glare" in flare.note(result)
 
 
 def test_the_iterations_converge_to_the_true_fraction_of_glare(room):
@@ -102,17 +105,20 @@ def test_the_iterations_converge_to_the_true_fraction_of_glare(room):
 
 def test_pixels_outside_the_glare_region_are_not_changed(room):
     F = lens.add_glare(room, GlareSpread(0.1, 3.0))
-    found = flare.remove_glare(F, part=0.2)
-    assert 0 < found.region.mean() < 0.9
-    assert np.array_equal(found.E[~found.region], F[~found.region])
-    assert np.all(found.E[found.region].min(axis=-1) < F[found.region].max(axis=-1))
-    assert f"{100 * found.spread.share:.1f} %" in flare.note(found)
+    result = flare.remove_glare(F, part=0.2)
+    assert 0 < result.region.mean() < 0.9
+    assert np.array_equal(result.E[~result.region], F[~result.region])
+    assert np.all(result.E[result.region].min(axis=-1) < F[result.region].max(axis=-1))
+    assert f"{100 * result.spread.share:.1f} %" in flare.note(result)
 
 
 def test_the_unit_of_light_does_not_matter(room):
     F = lens.add_glare(room, GlareSpread(0.1, 2.5))
-    one, other = flare.remove_glare(F), flare.remove_glare(F * np.float32(1024))
-    assert one.spread.power == other.spread.power and np.allclose(other.E, 1024 * one.E, rtol=1e-3)
+    plain = flare.remove_glare(F)
+    scaled = flare.remove_glare(F * np.float32(1024))
+    assert plain.spread.power == scaled.spread.power and np.allclose(
+        scaled.E, 1024 * plain.E, rtol=1e-3
+    )
 
 
 def test_gray_and_black_maps_are_accepted(room):
@@ -123,15 +129,15 @@ def test_gray_and_black_maps_are_accepted(room):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"F": np.full((4, 4), np.nan)}, "NaN"),
         ({"F": -np.ones((4, 4))}, "negative"),
         ({"part": 0}, "fraction"),
     ],
 )
-def test_invalid_maps_and_parameters_raise_an_error(wrong, said):
-    with pytest.raises(ValueError, match=said):
+def test_invalid_maps_and_parameters_raise_an_error(wrong, message):
+    with pytest.raises(ValueError, match=message):
         flare.remove_glare(**({"F": np.ones((4, 4))} | wrong))
 
 

@@ -13,10 +13,10 @@ from hdrlab.radiance.deghosting import deviation, frames, ghosts, reference, reg
 from hdrlab.radiance.merge import Quality, merge_with_quality
 from hdrlab.response import linear
 
-FILM, W = true_g("film"), weights.gaussian()
+FILM = true_g("film")
+W = weights.gaussian()
 LINEAR = linear.curve()
 SHAPE = (90, 140)
-TAU, EDGE = ghosts.TAU, ghosts.EDGE
 
 
 @pytest.fixture(scope="module")
@@ -43,14 +43,14 @@ def moving(wall):
 
 
 def found_in(taken, valid=None, merged=None, **knobs):
-    """Return the map without ghosts of a bracket by the film's own response."""
+    """Return the map of a bracket without ghosts, merged with the film's own response."""
     return ghosts.remove_ghosts(
         taken.images, taken.times, FILM, W, valid=valid, merged=merged, **knobs
     )
 
 
 def rms(E, truth, where):
-    """Return the root mean square of log2(E / truth) there, where the middle of all ratios is 1."""
+    """Return the root mean square of log2(E / truth) in a region, after dividing by the median ratio."""
     ratio = np.log2(E / truth)
     return float(np.sqrt(np.mean((ratio[where] - np.median(ratio)) ** 2)))
 
@@ -60,9 +60,11 @@ def rms(E, truth, where):
 
 def test_deviation_is_the_weighted_variance_of_the_frames_estimates():
     rng = np.random.default_rng(1)
-    images, times = rng.integers(1, 240, (4, 6, 7), np.uint8), np.array([1.0, 2, 4, 8])
+    images = rng.integers(1, 240, (4, 6, 7), np.uint8)
+    times = np.array([1.0, 2, 4, 8])
     taken = frames.calibrate_frames(images, times, LINEAR, np.ones((6, 7)))
-    x, w = LINEAR[images] - np.log(times)[:, None, None], W[images]
+    x = LINEAR[images] - np.log(times)[:, None, None]
+    w = W[images]
     mean = (w * x).sum(axis=0) / w.sum(axis=0)
     expected = (w * (x - mean) ** 2).sum(axis=0) / w.sum(axis=0)
     assert np.allclose(deviation.measure_deviation(taken, W).v, expected, rtol=1e-3, atol=1e-5)
@@ -87,14 +89,17 @@ def test_a_sharp_edge_misaligned_by_a_pixel_is_not_a_ghost(wall):
     E = merge_with_quality(images, times, FILM, W).E
     plain = deviation.measure_deviation(frames.calibrate_frames(images, times, FILM, E), W)
     assert np.sqrt(plain.v).max() > 0.5  # the door's edge is as contradictory as any ghost
-    assert deviation.score_contradiction(plain, tau=TAU, edge=0).max() > 3
-    assert deviation.score_contradiction(plain, tau=TAU, edge=0.5).max() < 1.1
-    assert not regions.find_seeds(deviation.score_contradiction(plain, tau=TAU, edge=EDGE)).any()
+    assert deviation.score_contradiction(plain, tau=ghosts.TAU, edge=0).max() > 3
+    assert deviation.score_contradiction(plain, tau=ghosts.TAU, edge=0.5).max() < 1.1
+    score = deviation.score_contradiction(plain, tau=ghosts.TAU, edge=ghosts.EDGE)
+    assert not regions.find_seeds(score).any()
 
 
 def test_regions_grow_only_from_their_seeds():
     seed, weak = np.zeros((2, 9, 30), bool)
-    seed[4, 2], weak[4, :12], weak[4, 20:] = True, True, True
+    seed[4, 2] = True
+    weak[4, :12] = True
+    weak[4, 20:] = True
     grown = regions.grow(seed, weak, 20)
     assert grown[4, :12].all() and not grown[:, 12:].any()
     assert regions.grow(seed, weak, 3)[4].nonzero()[0].max() == 5
@@ -102,13 +107,15 @@ def test_regions_grow_only_from_their_seeds():
 
 def test_holes_in_a_region_are_filled():
     ring = np.zeros((20, 20), bool)
-    ring[5:15, 5:15], ring[8:12, 8:12] = True, False
+    ring[5:15, 5:15] = True
+    ring[8:12, 8:12] = False
     assert regions.dilate(ring, 0)[5:15, 5:15].all()
     assert not regions.dilate(np.zeros((5, 5), bool), 3).any()
 
 
 def test_blending_is_linear_in_stops():
-    E, other = np.full((1, 3), 1.0, np.float32), np.full((1, 3), 16.0, np.float32)
+    E = np.full((1, 3), 1.0, np.float32)
+    other = np.full((1, 3), 16.0, np.float32)
     assert np.allclose(regions.blend(E, other, np.array([[0, 0.5, 1]])), [[1, 4, 16]])
 
 
@@ -119,7 +126,7 @@ def test_the_best_exposure_of_a_region_is_the_longest_that_measures_it():
 
 
 def test_a_reference_is_not_clipped_where_other_photos_are_darker():
-    """A lamp that moved is bright in the long frame only, where nothing but a bound is known."""
+    """A lamp that moved is bright only in the long frame, which gives no more than a bound there."""
     images = np.array([20, 80], np.uint8)[:, None, None] * np.ones((1, 40, 40), np.uint8)
     images[1, :, :10] = 255
     taken = frames.calibrate_frames(images, [1, 4], LINEAR, np.full((40, 40), 20 / 128))
@@ -165,7 +172,8 @@ def test_a_frame_is_not_used_where_it_contradicts_the_bound_of_a_clipped_referen
 
 
 def test_a_difference_in_the_dark_beside_a_noisy_light_is_found():
-    dark, everywhere = np.full((40, 40, 1), 1e-3, np.float32), np.ones((40, 40, 1), bool)
+    dark = np.full((40, 40, 1), 1e-3, np.float32)
+    everywhere = np.ones((40, 40, 1), bool)
     V = np.full((40, 40, 1), 1e-12, np.float32)
     V[:, :20, 0] = np.exp(np.random.default_rng(2).normal(0, 8, (40, 20)))
     known = reference.Estimate(dark, V, everywhere, np.zeros_like(V), np.full_like(V, np.inf))
@@ -181,35 +189,37 @@ def test_the_error_in_moving_regions_is_ten_times_smaller_and_others_are_not_cha
     b = moving.bracket
     plain = merge_with_quality(b.images, b.times, FILM, W)
     for knobs in ({}, {"fixed": 2}):
-        found = found_in(b, **knobs)
+        result = found_in(b, **knobs)
         truth = moving.still.copy()
-        for r, j in enumerate(found.references, start=1):
-            truth[found.labels == r] = moving.moments[j][found.labels == r]
-        where = moving.region & (found.labels > 0) & (found.quality == Quality.MEASURED)
+        for r, j in enumerate(result.references, start=1):
+            truth[result.labels == r] = moving.moments[j][result.labels == r]
+        where = moving.region & (result.labels > 0) & (result.quality == Quality.MEASURED)
         assert where.sum() > 0.5 * moving.region.sum()
         candidates = (truth, moving.still, *moving.moments)
-        assert 10 * rms(found.E, truth, where) < min(rms(plain.E, one, where) for one in candidates)
-        outside = found.labels == 0
-        assert np.array_equal(found.E[outside], plain.E[outside])
+        assert 10 * rms(result.E, truth, where) < min(
+            rms(plain.E, candidate, where) for candidate in candidates
+        )
+        outside = result.labels == 0
+        assert np.array_equal(result.E[outside], plain.E[outside])
         assert (
-            np.array_equal(found.quality[outside], plain.quality[outside])
-            and found.used[:, outside].all()
+            np.array_equal(result.quality[outside], plain.quality[outside])
+            and result.used[:, outside].all()
         )
 
 
 def test_a_figure_seen_in_the_only_unclipped_frame_is_found_as_one_region():
-    """Before a bright sky, which the longer frames clip; below it the wall, which all of them measure."""
+    """The sky is clipped in the longer frames; the wall below is measured in all of them."""
     sky = np.where(np.arange(90)[:, None] < 50, 100.0, 2.0) * np.ones((1, 140))
-    ball, times = movers.ball(SHAPE, (50, 70), 15, 8.0, stripes=0), [0.004, 0.03, 0.12, 0.5]
+    ball = movers.ball(SHAPE, (50, 70), 15, 8.0, stripes=0)
+    times = [0.004, 0.03, 0.12, 0.5]
     images = camera.shoot(sky, times, camera.Camera(response="film"), rng=1).images.copy()
     seen, _ = movers.compose_moment(np.float32(sky), ball, (0, 0))
     images[0] = camera.shoot(seen, times, camera.Camera(response="film"), rng=1).images[0]
-    found = ghosts.remove_ghosts(images, times, FILM, W)
+    result = ghosts.remove_ghosts(images, times, FILM, W)
     whole = ball.mask > 0.5
-    assert found.labels.max() == 1 and np.all(found.labels[whole] == 1)
-    upper, lower = (
-        np.median(np.log2(found.E / seen)[whole & half]) for half in (sky > 50, sky < 50)
-    )
+    assert result.labels.max() == 1 and np.all(result.labels[whole] == 1)
+    upper = np.median(np.log2(result.E / seen)[whole & (sky > 50)])
+    lower = np.median(np.log2(result.E / seen)[whole & (sky < 50)])
     assert abs(upper - lower) < 0.3
     still = camera.shoot(sky, times, camera.Camera(response="film"), rng=1).images
     assert ghosts.remove_ghosts(still, times, FILM, W).labels.max() == 0
@@ -217,10 +227,10 @@ def test_a_figure_seen_in_the_only_unclipped_frame_is_found_as_one_region():
 
 def test_with_a_fixed_reference_the_map_shows_its_moment(moving):
     for j in range(5):
-        found = found_in(moving.bracket, fixed=j)
-        assert set(found.references.tolist()) == {j}
-        inside = found.labels > 0
-        assert found.used[j, inside].all()
+        result = found_in(moving.bracket, fixed=j)
+        assert set(result.references.tolist()) == {j}
+        inside = result.labels > 0
+        assert result.used[j, inside].all()
         Z = moving.bracket.images[j][moving.hidden[j]]
         if (
             np.mean(Z.max(axis=-1) < 250) > 0.5
@@ -229,13 +239,14 @@ def test_with_a_fixed_reference_the_map_shows_its_moment(moving):
 
 
 def test_alone_uses_one_frame_in_each_region(moving):
-    found = found_in(moving.bracket, alone=True)
-    inside = found.labels > 0
-    assert inside.any() and np.all(found.used.sum(axis=0)[inside] == 1)
+    result = found_in(moving.bracket, alone=True)
+    inside = result.labels > 0
+    assert inside.any() and np.all(result.used.sum(axis=0)[inside] == 1)
 
 
 def test_any_order_of_frames_gives_the_same_map(moving):
-    b, order = moving.bracket, [3, 0, 4, 1, 2]
+    b = moving.bracket
+    order = [3, 0, 4, 1, 2]
     first = found_in(b)
     other = ghosts.remove_ghosts(b.images[order], b.times[order], FILM, W)
     assert np.array_equal(first.labels, other.labels) and np.allclose(first.E, other.E, rtol=1e-5)
@@ -257,9 +268,9 @@ def test_masked_pixels_are_not_used(moving):
     valid = np.ones(b.images.shape[:3], bool)
     valid[:, :, :6] = False
     valid[1] = False
-    found = found_in(b, valid=valid)
-    assert not found.used[~valid].any() and 1 not in found.references
-    assert np.all(found.quality[:, :6] == Quality.UNSEEN) and np.all(np.isfinite(found.E))
+    result = found_in(b, valid=valid)
+    assert not result.used[~valid].any() and 1 not in result.references
+    assert np.all(result.quality[:, :6] == Quality.UNSEEN) and np.all(np.isfinite(result.E))
 
 
 def test_remove_ghosts_does_not_change_its_arguments(moving):
@@ -267,8 +278,8 @@ def test_remove_ghosts_does_not_change_its_arguments(moving):
     merged = merge_with_quality(b.images, b.times, FILM, W)
     before = merged.E.copy(), merged.quality.copy(), b.images.copy()
     found_in(b, merged=merged)
-    for one, other in zip(before, (merged.E, merged.quality, b.images), strict=True):
-        assert np.array_equal(one, other)
+    for copy, array in zip(before, (merged.E, merged.quality, b.images), strict=True):
+        assert np.array_equal(copy, array)
 
 
 # What stands still
@@ -279,44 +290,45 @@ def test_a_still_scene_has_no_moving_region_and_the_plain_map(wall):
         still = camera.shoot(
             wall, camera.times_around(wall, 5), camera.Camera(bits=bits, full_well=20_000), rng=seed
         )
-        g, w = true_g("film", 2**bits), weights.gaussian(2**bits)
-        found = ghosts.remove_ghosts(still.images, still.times, g, w)
-        assert not found.labels.any() and len(found.references) == 0
-        assert np.array_equal(found.E, merge_with_quality(still.images, still.times, g, w).E)
+        g = true_g("film", 2**bits)
+        w = weights.gaussian(2**bits)
+        result = ghosts.remove_ghosts(still.images, still.times, g, w)
+        assert not result.labels.any() and len(result.references) == 0
+        assert np.array_equal(result.E, merge_with_quality(still.images, still.times, g, w).E)
 
 
 def test_what_all_photos_agree_on_within_a_region_stays_the_plain_map(moving, wall):
     b = moving.bracket
     plain = merge_with_quality(b.images, b.times, FILM, W)
-    found = found_in(b)
-    inside = found.labels > 0
-    same = inside & found.used.all(axis=0)
-    assert same.any() and np.allclose(found.E[same], plain.E[same], rtol=1e-5)
+    result = found_in(b)
+    inside = result.labels > 0
+    same = inside & result.used.all(axis=0)
+    assert same.any() and np.allclose(result.E[same], plain.E[same], rtol=1e-5)
 
 
 @pytest.mark.parametrize("level", [0, 255])
 def test_black_and_white_brackets_have_no_ghosts(level):
-    found = ghosts.remove_ghosts(np.full((3, 20, 30, 3), level, np.uint8), [1, 2, 4], FILM)
-    assert not found.labels.any() and np.all(np.isfinite(found.E))
+    result = ghosts.remove_ghosts(np.full((3, 20, 30, 3), level, np.uint8), [1, 2, 4], FILM)
+    assert not result.labels.any() and np.all(np.isfinite(result.E))
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"fixed": 5}, "number of a frame"),
         ({"valid": np.ones((2, 2))}, "mask of shape"),
     ],
 )
-def test_invalid_arguments_raise_an_error(moving, wrong, said):
-    with pytest.raises(ValueError, match=said):
+def test_invalid_arguments_raise_an_error(moving, wrong, message):
+    with pytest.raises(ValueError, match=message):
         found_in(moving.bracket, **wrong)
 
 
 def test_the_note_names_the_regions_and_their_reference_frames(moving, wall):
     names = [f"img{j}" for j in range(5)]
-    found = found_in(moving.bracket)
-    said = ghosts.note(found, names)
-    assert "region" in said and all(names[j] in said for j in found.references)
+    result = found_in(moving.bracket)
+    note = ghosts.note(result, names)
+    assert "region" in note and all(names[j] in note for j in result.references)
     still = camera.shoot(wall, moving.bracket.times)
     assert "nothing moved" in ghosts.note(found_in(still), names)
 
@@ -327,18 +339,21 @@ def test_the_note_questions_widespread_motion(moving):
     noise = np.repeat(np.repeat(noise[:, ::9, ::9], 9, axis=1), 9, axis=2)[
         :, : SHAPE[0], : SHAPE[1]
     ]
-    found = ghosts.remove_ghosts(noise, b.times, FILM, W)
-    assert "alignment" in ghosts.note(found, [f"img{j}" for j in range(5)])
+    result = ghosts.remove_ghosts(noise, b.times, FILM, W)
+    assert "alignment" in ghosts.note(result, [f"img{j}" for j in range(5)])
 
 
 def test_the_mask_grows_from_clear_motion_into_textured_parts():
-    v, r = np.zeros((40, 60), np.float32), np.zeros((40, 60), np.float32)
+    v = np.zeros((40, 60), np.float32)
+    r = np.zeros((40, 60), np.float32)
     v[15:25, 10:20] = 1.0  # a head, which contradicts clearly
-    v[15:25, 20:30], r[15:25, 20:30] = 0.15**2, 0.5  # a striped coat
-    found = deviation.Deviation(v, np.zeros_like(v), r)
-    score, mask = ghosts.detect_motion(found, tau=0.1, edge=0.35, margin=3)
+    # a striped coat
+    v[15:25, 20:30] = 0.15**2
+    r[15:25, 20:30] = 0.5
+    textured = deviation.Deviation(v, np.zeros_like(v), r)
+    score, mask = ghosts.detect_motion(textured, tau=0.1, edge=0.35, margin=3)
     assert (score[15:25, 20:30] < 1).all() and mask[15:25, 10:30].all()
-    beside = deviation.Deviation(np.where(r > 0, v, 0), found.s2, r)
+    beside = deviation.Deviation(np.where(r > 0, v, 0), textured.s2, r)
     assert not ghosts.detect_motion(beside, tau=0.1, edge=0.35, margin=3)[1].any()
 
 
@@ -347,21 +362,25 @@ def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clip
     E = np.full((1, 3), 100 / 128, np.float32)
     g = np.log(np.maximum(np.arange(256), 0.5) / 128)
     taken = frames.calibrate_frames(images, [1, 2], g, E)
-    found = reference.read_frame(taken, 1, np.s_[:, :])
+    frame = reference.read_frame(taken, 1, np.s_[:, :])
     assert (
-        found.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1]))
-        and found.high[0, 1, 0] == np.inf
+        frame.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1]))
+        and frame.high[0, 1, 0] == np.inf
     )
     assert (
-        found.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top]))
-        and found.low[0, 1, 0] == 0
+        frame.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top]))
+        and frame.low[0, 1, 0] == 0
     )
-    assert found.measured[0, :, 0].tolist() == [False, True, False]
+    assert frame.measured[0, :, 0].tolist() == [False, True, False]
 
 
 def test_contradictions_of_clipped_frames_are_found_except_at_misaligned_edges():
-    E, near, outside = (np.zeros((9, 11, 3), kind) for kind in (np.float32, bool, bool))
-    E[4, 5], near[3:6, 4:7], outside[:, -2:] = 1.0, True, True
+    E = np.zeros((9, 11, 3), np.float32)
+    near = np.zeros((9, 11, 3), bool)
+    outside = np.zeros((9, 11, 3), bool)
+    E[4, 5] = 1.0
+    near[3:6, 4:7] = True
+    outside[:, -2:] = True
     clipped = np.full((1, *E.shape), 255, np.uint8)
     taken = frames.Calibrated(
         clipped, np.ones(1), 255, None, np.zeros((1, 3, 256)), np.ones((1, 3, 256))
@@ -373,7 +392,8 @@ def test_contradictions_of_clipped_frames_are_found_except_at_misaligned_edges()
 
 @pytest.mark.parametrize("w", [np.zeros(256), -np.ones(256), np.ones((256, 3))])
 def test_invalid_weights_raise_an_error(moving, w):
-    images, times = moving.bracket.images, moving.bracket.times
+    images = moving.bracket.images
+    times = moving.bracket.times
     E = merge_with_quality(images, times, FILM).E
     taken = frames.calibrate_frames(images, times, FILM, E)
     with pytest.raises(InputError, match="weights"):
@@ -381,6 +401,7 @@ def test_invalid_weights_raise_an_error(moving, w):
 
 
 def test_a_map_of_another_size_than_the_photos_raises_an_error(moving):
-    images, times = moving.bracket.images, moving.bracket.times
+    images = moving.bracket.images
+    times = moving.bracket.times
     with pytest.raises(InputError, match="shape"):
         frames.calibrate_frames(images, times, FILM, np.ones((4, 5, 3)))

@@ -17,13 +17,15 @@ from hdrlab.response import linear
 
 LINEAR = linear.curve()
 FILM = responses.true_g("film")
-merge, merge_with_quality = quick.merge, quick.merge_with_quality  # or the lesson's, see `either`
+# the functions that are tested: the fast ones, or those of the lesson (see `either`)
+merge = quick.merge
+merge_with_quality = quick.merge_with_quality
 CURVES = sorted(responses.RESPONSES)
 
 
 @pytest.fixture(scope="module", params=[lesson, quick], ids=["lesson", "fast"], autouse=True)
 def either(request):
-    """Ask every promise of the lesson, and of what runs."""
+    """Run each test on the functions of the lesson, and on the fast ones."""
     names = {name: getattr(request.param, name) for name in ("merge", "merge_with_quality")}
     globals().update(names)
     return request.param
@@ -48,8 +50,11 @@ def test_one_frame_gives_its_exposure_over_its_time(method):
 
 
 def test_each_method_follows_its_formula():
-    z, t, w = np.array([60, 200]), np.array([0.25, 1.0]), weights.hat()
-    wz, X = w[z], np.exp(FILM[z])
+    z = np.array([60, 200])
+    t = np.array([0.25, 1.0])
+    w = weights.hat()
+    wz = w[z]
+    X = np.exp(FILM[z])
     expected = {
         "log": np.exp(np.sum(wz * (FILM[z] - np.log(t))) / wz.sum()),
         "likelihood": np.sum(wz * X * t) / np.sum(wz * t**2),
@@ -75,20 +80,20 @@ def test_all_methods_agree_for_photos_without_noise(name, decades):
         for m in METHODS
     ]
     measured = maps[0].quality == Quality.MEASURED
-    for found in maps:
-        assert np.array_equal(found.quality, maps[0].quality)
-        assert np.allclose(found.E[measured] / maps[0].E[measured], 1, atol=0.002)
+    for merged in maps:
+        assert np.array_equal(merged.quality, maps[0].quality)
+        assert np.allclose(merged.E[measured] / maps[0].E[measured], 1, atol=0.002)
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", CURVES)
 def test_radiance_is_accurate_within_one_percent_where_well_exposed(name, method, seven_frames):
     E, taken = seven_frames(name)
-    found = merge_with_quality(
+    merged = merge_with_quality(
         taken.images, taken.times, responses.true_g(name), weights.gaussian(), method=method
     )
     well = ((taken.images > 30) & (taken.images < 225)).any(axis=0)
-    ratio = found.E[well] / E[well]
+    ratio = merged.E[well] / E[well]
     assert well.mean() > 0.8 and np.median(np.abs(ratio / np.median(ratio) - 1)) < 0.01
 
 
@@ -102,7 +107,8 @@ def test_any_order_of_frames_gives_the_same_map_bit_for_bit(method, bits, times)
     dtype = np.uint8 if bits == 8 else np.uint16
     rng = np.random.default_rng(3)
     images = rng.integers(0, 2**bits, (3, 6, 7, 3), dtype)
-    valid, times = rng.random((3, 6, 7)) > 0.2, np.array(times)
+    valid = rng.random((3, 6, 7)) > 0.2
+    times = np.array(times)
     first = merge_with_quality(images, times, FILM, method=method, valid=valid)
     for order in map(list, permutations(range(3))):
         other = merge_with_quality(
@@ -151,21 +157,24 @@ def test_the_scale_of_the_weights_does_not_matter():
 
 def test_the_number_of_threads_does_not_change_the_map(monkeypatch):
     images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
-    one, three = (
-        monkeypatch.setattr(threads, "THREADS", count)
-        or quick.merge_with_quality(images, [1, 2, 8], FILM)
-        for count in (1, 3)
-    )
-    assert np.array_equal(one.E, three.E) and np.array_equal(one.quality, three.quality)
+    monkeypatch.setattr(threads, "THREADS", 1)
+    with_one_thread = quick.merge_with_quality(images, [1, 2, 8], FILM)
+    monkeypatch.setattr(threads, "THREADS", 3)
+    with_three_threads = quick.merge_with_quality(images, [1, 2, 8], FILM)
+    assert np.array_equal(with_one_thread.E, with_three_threads.E)
+    assert np.array_equal(with_one_thread.quality, with_three_threads.quality)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_merge_does_not_change_its_arguments_in_any_memory_layout(dtype):
     images = np.random.default_rng(9).integers(0, np.iinfo(dtype).max, (3, 40, 30, 3), dtype)
     g = responses.true_g("film", np.iinfo(dtype).max + 1)
-    given, plain = np.asfortranarray(images), merge(images, [4, 2, 1], g)
-    given.setflags(write=False)
-    assert np.array_equal(merge(given, [4, 2, 1], g), plain) and np.array_equal(given, images)
+    fortran_images = np.asfortranarray(images)
+    plain = merge(images, [4, 2, 1], g)
+    fortran_images.setflags(write=False)
+    assert np.array_equal(merge(fortran_images, [4, 2, 1], g), plain) and np.array_equal(
+        fortran_images, images
+    )
     wide = np.repeat(images, 2, axis=2)[:, :, ::2]
     assert np.array_equal(merge(wide, [4, 2, 1], g), plain)
     assert np.array_equal(merge(list(images), [4, 2, 1], g), plain)
@@ -176,9 +185,9 @@ def test_merge_does_not_change_its_arguments_in_any_memory_layout(dtype):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_pixel_clipped_in_every_frame_gets_the_bound_of_the_shortest_and_a_flag(method):
-    found = merge_with_quality(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
-    assert np.isclose(found.E[0, 0], np.exp(FILM[TOP]) / 0.25, rtol=1e-6)
-    assert found.quality.tolist() == [[Quality.CLIPPED, Quality.MEASURED]]
+    merged = merge_with_quality(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
+    assert np.isclose(merged.E[0, 0], np.exp(FILM[TOP]) / 0.25, rtol=1e-6)
+    assert merged.quality.tolist() == [[Quality.CLIPPED, Quality.MEASURED]]
 
 
 @pytest.mark.parametrize(("level", "bound"), [(255, TOP), (0, 1)])
@@ -190,16 +199,17 @@ def test_each_channel_has_its_own_bound(level, bound):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_pixel_dark_in_every_frame_gets_the_bound_of_the_longest_and_a_flag(method):
-    found = merge_with_quality(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
-    assert np.isclose(found.E[0, 0], np.exp(FILM[1]) / 0.5, rtol=1e-6)
-    assert found.quality.tolist() == [[Quality.DARK, Quality.MEASURED]]
+    merged = merge_with_quality(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
+    assert np.isclose(merged.E[0, 0], np.exp(FILM[1]) / 0.5, rtol=1e-6)
+    assert merged.quality.tolist() == [[Quality.DARK, Quality.MEASURED]]
 
 
 def test_a_pixel_dark_in_one_frame_and_clipped_in_the_next_gets_the_mean_of_its_bounds():
-    found = merge_with_quality(row([0, 10], [255, 20]), [0.25, 1024], FILM)
-    low, high = np.exp(FILM[TOP]) / 1024, np.exp(FILM[1]) / 0.25
-    assert low < high and np.isclose(found.E[0, 0], np.sqrt(low * high), rtol=1e-6)
-    assert found.quality[0, 0] == Quality.DARK | Quality.CLIPPED
+    merged = merge_with_quality(row([0, 10], [255, 20]), [0.25, 1024], FILM)
+    low = np.exp(FILM[TOP]) / 1024
+    high = np.exp(FILM[1]) / 0.25
+    assert low < high and np.isclose(merged.E[0, 0], np.sqrt(low * high), rtol=1e-6)
+    assert merged.quality[0, 0] == Quality.DARK | Quality.CLIPPED
 
 
 STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
@@ -207,17 +217,18 @@ STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
 
 @given(STACKS, st.sampled_from(sorted(METHODS)), st.data())
 def test_measured_radiance_lies_between_the_bounds_of_dark_and_clipped_pixels(images, method, data):
-    """All that is measured lies between what a dark pixel takes and what a clipped one takes."""
+    """A measured pixel lies between the value of a dark pixel and that of a clipped one."""
     times = np.array(
         data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images)))
     )
-    found = merge_with_quality(images, times, FILM, method=method, repair=False)
-    low, high = np.exp(FILM[1]) / times.max(), np.exp(FILM[TOP]) / times.min()
-    assert found.E.dtype == np.float32 and np.all(np.isfinite(found.E))
-    assert np.all(found.E >= low * (1 - 1e-5)) and np.all(found.E <= high * (1 + 1e-5))
+    merged = merge_with_quality(images, times, FILM, method=method, repair=False)
+    low = np.exp(FILM[1]) / times.max()
+    high = np.exp(FILM[TOP]) / times.min()
+    assert merged.E.dtype == np.float32 and np.all(np.isfinite(merged.E))
+    assert np.all(merged.E >= low * (1 - 1e-5)) and np.all(merged.E <= high * (1 + 1e-5))
     clipped = (images >= TOP).all(axis=0)
-    assert np.allclose(found.E[clipped], high) and np.all(
-        found.quality[clipped.any(axis=-1)] & Quality.CLIPPED
+    assert np.allclose(merged.E[clipped], high) and np.all(
+        merged.quality[clipped.any(axis=-1)] & Quality.CLIPPED
     )
 
 
@@ -235,21 +246,22 @@ def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(
 ):
     valid = data.draw(arrays(bool, images.shape))
     times = 2.0 ** np.arange(len(images))
-    found = merge_with_quality(
+    merged = merge_with_quality(
         images, times, responses.true_g("gamma", 65536), method=method, valid=valid
     )
-    assert np.all(np.isfinite(found.E)) and np.all(found.E >= 0)
+    assert np.all(np.isfinite(merged.E)) and np.all(merged.E >= 0)
     assert np.array_equal(
-        (found.quality & Quality.UNSEEN) > 0, ~valid.any(axis=0) & (found.quality != Quality.STUCK)
+        (merged.quality & Quality.UNSEEN) > 0,
+        ~valid.any(axis=0) & (merged.quality != Quality.STUCK),
     )
-    assert np.all((found.E > 0) | (found.quality != Quality.MEASURED))
+    assert np.all((merged.E > 0) | (merged.quality != Quality.MEASURED))
 
 
 @pytest.mark.parametrize("level", [0, 255])
 def test_black_or_white_stacks_give_finite_maps_without_measured_pixels(level):
-    found = merge_with_quality(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
-    assert np.all(np.isfinite(found.E)) and np.ptp(found.E) == 0
-    assert np.all(found.quality == (Quality.CLIPPED if level else Quality.DARK))
+    merged = merge_with_quality(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
+    assert np.all(np.isfinite(merged.E)) and np.ptp(merged.E) == 0
+    assert np.all(merged.quality == (Quality.CLIPPED if level else Quality.DARK))
 
 
 def test_a_clipped_sun_is_not_darker_than_its_sky():
@@ -258,10 +270,11 @@ def test_a_clipped_sun_is_not_darker_than_its_sky():
     taken = camera.shoot(
         E, [1 / 256, 1 / 64, 1 / 16, 1 / 4], camera.Camera(full_well=20_000, read_noise=5), rng=1
     )
-    found = merge_with_quality(taken.images, taken.times, FILM)
+    merged = merge_with_quality(taken.images, taken.times, FILM)
     sun = np.hypot(y, x) < 5
     assert (
-        np.all(found.quality[sun] == Quality.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
+        np.all(merged.quality[sun] == Quality.CLIPPED)
+        and merged.E[sun].min() >= merged.E[~sun].max()
     )
 
 
@@ -284,19 +297,19 @@ def test_a_camera_that_clips_before_its_color_matrix_gives_lamps_no_tint():
     )  # of the camera's filters
     images = np.round(255 * np.clip(exposures @ matrix.T, 0, 1)).astype(np.uint8)[:, :, None]
     g = np.log(np.maximum(np.arange(256), 0.5) / 255)
-    found = merge_with_quality(images, [0.25, 1, 4], g, method="shot", repair=False)
+    merged = merge_with_quality(images, [0.25, 1, 4], g, method="shot", repair=False)
     truth = lamp @ matrix.T
-    is_known = (found.quality[:, 0] == 0) & (truth > 0.05).all(axis=-1)
+    is_known = (merged.quality[:, 0] == 0) & (truth > 0.05).all(axis=-1)
     assert is_known.sum() > 100
-    tint = np.log2(found.E[:, 0][is_known] / truth[is_known])
+    tint = np.log2(merged.E[:, 0][is_known] / truth[is_known])
     assert np.abs(tint - tint.mean(axis=-1, keepdims=True)).max() < 0.08
 
 
 def test_where_every_frame_clips_a_channel_the_others_keep_their_measurement():
     images = np.array([[[[255, 100, 0]]], [[[255, 200, 1]]]], np.uint8)
-    found = merge_with_quality(images, [1, 2], LINEAR)
-    assert np.allclose(found.E[0, 0], [LINEAR_AT_TOP, 100 / 128, 1 / 128 / 2], rtol=1e-5)
-    assert found.quality[0, 0] == Quality.CLIPPED
+    merged = merge_with_quality(images, [1, 2], LINEAR)
+    assert np.allclose(merged.E[0, 0], [LINEAR_AT_TOP, 100 / 128, 1 / 128 / 2], rtol=1e-5)
+    assert merged.quality[0, 0] == Quality.CLIPPED
 
 
 LINEAR_AT_TOP = TOP / 128
@@ -307,8 +320,8 @@ def test_highlights_keep_the_colour_of_their_light():
     taken = camera.shoot(
         np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), camera.Camera(full_well=50_000), rng=2
     )
-    found = merge_with_quality(taken.images, taken.times, FILM)
-    tint = np.median(found.E, axis=0)[np.median(found.quality, axis=0) == Quality.MEASURED]
+    merged = merge_with_quality(taken.images, taken.times, FILM)
+    tint = np.median(merged.E, axis=0)[np.median(merged.quality, axis=0) == Quality.MEASURED]
     assert np.allclose(tint[:, 1:] / tint[:, :1], [0.7, 0.5], rtol=0.06)
 
 
@@ -329,12 +342,13 @@ def test_a_stuck_pixel_is_replaced_by_the_median_of_its_neighbors_and_flagged(le
     y, x = where
     images = taken.images.copy()
     images[:, y, x, 1] = level  # hot or dead in every frame
-    clean, found = (merge_with_quality(Z, taken.times, FILM) for Z in (taken.images, images))
-    assert found.quality[y, x] == Quality.STUCK and np.count_nonzero(found.quality) == 1
-    assert np.allclose(found.E[y, x], clean.E[y, x], rtol=0.1)
-    others = np.ones(found.quality.shape, bool)
+    clean = merge_with_quality(taken.images, taken.times, FILM)
+    merged = merge_with_quality(images, taken.times, FILM)
+    assert merged.quality[y, x] == Quality.STUCK and np.count_nonzero(merged.quality) == 1
+    assert np.allclose(merged.E[y, x], clean.E[y, x], rtol=0.1)
+    others = np.ones(merged.quality.shape, bool)
     others[y, x] = False
-    assert np.array_equal(found.E[others], clean.E[others])
+    assert np.array_equal(merged.E[others], clean.E[others])
     left = merge_with_quality(images, taken.times, FILM, repair=False)
     assert left.quality[y, x] != Quality.STUCK and not np.allclose(
         left.E[y, x, 1], clean.E[y, x, 1], rtol=0.1
@@ -346,10 +360,10 @@ def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
     taken = camera.shoot(
         light, 4.0 ** np.arange(-3, 1), camera.Camera(hot=0.002, full_well=50_000), rng=3
     )
-    found = merge_with_quality(taken.images, taken.times, FILM)
+    merged = merge_with_quality(taken.images, taken.times, FILM)
     hot = taken.images[0] == 255
-    assert 3 < hot.sum() < 30 and np.array_equal(found.quality == Quality.STUCK, hot)
-    ratio = found.E / light
+    assert 3 < hot.sum() < 30 and np.array_equal(merged.quality == Quality.STUCK, hot)
+    ratio = merged.E / light
     assert np.all(np.abs(ratio / np.median(ratio) - 1) < 0.1)
 
 
@@ -357,8 +371,8 @@ def test_a_measured_highlight_of_one_pixel_is_kept():
     E = np.full((9, 9), 0.3, np.float32)
     E[4, 4] = 12
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
-    found = merge_with_quality(taken.images, taken.times, FILM)
-    assert not found.quality.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 40, rtol=0.03)
+    merged = merge_with_quality(taken.images, taken.times, FILM)
+    assert not merged.quality.any() and np.isclose(merged.E[4, 4] / merged.E[0, 0], 40, rtol=0.03)
 
 
 def test_the_neighbors_of_a_clipped_highlight_are_not_changed():
@@ -366,9 +380,9 @@ def test_the_neighbors_of_a_clipped_highlight_are_not_changed():
     dark = merge(camera.shoot(E, [1 / 16, 1 / 4, 1]).images, [1 / 16, 1 / 4, 1], FILM)
     E[3:5, 4:6] = 1000
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
-    found = merge_with_quality(taken.images, taken.times, FILM)
-    assert np.all(found.quality[E == 1000] == Quality.CLIPPED) and np.array_equal(
-        found.E[E < 1], dark[E < 1]
+    merged = merge_with_quality(taken.images, taken.times, FILM)
+    assert np.all(merged.quality[E == 1000] == Quality.CLIPPED) and np.array_equal(
+        merged.E[E < 1], dark[E < 1]
     )
 
 
@@ -376,8 +390,10 @@ def test_without_two_exposures_nothing_counts_as_stuck():
     E = np.full((9, 9), 0.1, np.float32)
     E[4, 4] = 0.8
     for times in ([1.0], [1.0, 1.0], [1.0, 1.1]):
-        found = merge_with_quality(camera.shoot(E, times).images, times, FILM)
-        assert not found.quality.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 8, rtol=0.03)
+        merged = merge_with_quality(camera.shoot(E, times).images, times, FILM)
+        assert not merged.quality.any() and np.isclose(
+            merged.E[4, 4] / merged.E[0, 0], 8, rtol=0.03
+        )
 
 
 # Masks and weights
@@ -386,16 +402,17 @@ def test_without_two_exposures_nothing_counts_as_stuck():
 def test_masked_pixels_are_not_merged():
     images = np.random.default_rng(10).integers(1, TOP, (3, 20, 30), np.uint8)
     valid = np.ones(images.shape, bool)
-    valid[0, :, :10], valid[2, :, 20:] = False, False
-    found = merge_with_quality(images, [1, 2, 4], FILM, valid=valid, repair=False).E
+    valid[0, :, :10] = False
+    valid[2, :, 20:] = False
+    merged = merge_with_quality(images, [1, 2, 4], FILM, valid=valid, repair=False).E
     assert np.array_equal(
-        found[:, :10], merge_with_quality(images[1:, :, :10], [2, 4], FILM, repair=False).E
+        merged[:, :10], merge_with_quality(images[1:, :, :10], [2, 4], FILM, repair=False).E
     )
     assert np.array_equal(
-        found[:, 20:], merge_with_quality(images[:2, :, 20:], [1, 2], FILM, repair=False).E
+        merged[:, 20:], merge_with_quality(images[:2, :, 20:], [1, 2], FILM, repair=False).E
     )
     assert np.array_equal(
-        found[:, 10:20], merge_with_quality(images[:, :, 10:20], [1, 2, 4], FILM, repair=False).E
+        merged[:, 10:20], merge_with_quality(images[:, :, 10:20], [1, 2, 4], FILM, repair=False).E
     )
 
 
@@ -403,34 +420,36 @@ def test_a_pixel_masked_in_every_frame_is_0_and_flagged():
     images = np.full((2, 3, 4, 3), 100, np.uint8)
     valid = np.ones((2, 3, 4), bool)
     valid[:, 1, 2] = False
-    found = merge_with_quality(images, [1, 2], FILM, valid=valid)
+    merged = merge_with_quality(images, [1, 2], FILM, valid=valid)
     assert (
-        np.all(found.E[1, 2] == 0)
-        and found.quality[1, 2] == Quality.UNSEEN
-        and np.count_nonzero(found.quality) == 1
+        np.all(merged.E[1, 2] == 0)
+        and merged.quality[1, 2] == Quality.UNSEEN
+        and np.count_nonzero(merged.quality) == 1
     )
 
 
 def test_bounds_are_computed_from_unmasked_frames():
     valid = np.array([[[False, True]], [[True, True]]])
-    found = merge_with_quality(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
-    assert np.allclose(found.E, np.exp(FILM[TOP]) * np.array([[1 / 4, 1]]))
+    merged = merge_with_quality(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
+    assert np.allclose(merged.E, np.exp(FILM[TOP]) * np.array([[1 / 4, 1]]))
 
 
 def test_a_masked_pixel_is_not_mistaken_for_a_stuck_one():
     taken = flat_scene()
-    images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
-    images[[0, 2], 5, 6], valid[[0, 2], 5, 6] = 255, False
-    found = merge_with_quality(images, taken.times, FILM, valid=valid)
-    assert not found.quality.any()
-    assert np.array_equal(found.E[5, 6], merge(taken.images[1:2], taken.times[1:2], FILM)[5, 6])
+    images = taken.images.copy()
+    valid = np.ones(taken.images.shape[:3], bool)
+    images[[0, 2], 5, 6] = 255
+    valid[[0, 2], 5, 6] = False
+    merged = merge_with_quality(images, taken.times, FILM, valid=valid)
+    assert not merged.quality.any()
+    assert np.array_equal(merged.E[5, 6], merge(taken.images[1:2], taken.times[1:2], FILM)[5, 6])
 
 
 def test_pixels_with_weight_0_in_all_frames_are_still_measured():
     w = weights.cut(weights.flat(), above=0.8, below=0.2)
-    found = merge_with_quality(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
-    assert not found.quality.any() and np.allclose(
-        found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4
+    merged = merge_with_quality(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
+    assert not merged.quality.any() and np.allclose(
+        merged.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4
     )
 
 
@@ -441,7 +460,7 @@ def test_the_response_decides_each_channel():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("changes", "message"),
     [
         ({"images": np.zeros((2, 4, 5))}, "uint8 or uint16"),
         ({"times": [1]}, "expected 2 exposure times"),
@@ -462,10 +481,10 @@ def test_the_response_decides_each_channel():
         ({"top": 1.5}, "top as a fraction"),
     ],
 )
-def test_invalid_arguments_raise_an_error(given, said):
-    knobs = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | given
-    with pytest.raises(ValueError, match=said):
-        merge_with_quality(**knobs)
+def test_invalid_arguments_raise_an_error(changes, message):
+    arguments = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | changes
+    with pytest.raises(ValueError, match=message):
+        merge_with_quality(**arguments)
 
 
 @pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
@@ -509,7 +528,7 @@ def test_masked_levels_raise_an_error_instead_of_being_merged(verb):
 
 
 def test_expendable_photos_give_the_same_map():
-    """The pipeline lets the fast merge give the frames' memory back as it reads them."""
+    """The pipeline lets the fast merge free each frame's memory after it has read it."""
     rng = np.random.default_rng(3)
     images = rng.integers(0, 256, (4, 1100, 300, 3), dtype=np.uint8)
     kept = quick.merge_with_quality(images.copy(), [1, 2, 4, 8], FILM)

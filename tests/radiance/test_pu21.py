@@ -1,4 +1,4 @@
-"""hdrlab.radiance.pu21: PU21 against its authors' figures, MATLAB's SSIM, and what must lower a score."""
+"""hdrlab.radiance.pu21 against the authors' figures and MATLAB's SSIM; damage lowers a score."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def reference(seed=0, shape=(*SHAPE, 3)):
 
 
 def test_100_candela_per_square_meter_gives_256_as_the_authors_promise():
-    """So that PU-PSNR of an ordinary display is similar to PSNR of its pixel values."""
+    """This makes PU-PSNR on an ordinary display similar to the PSNR of its pixel values."""
     assert pu21.encode(100) == pytest.approx(256.4, abs=0.05)
 
 
@@ -47,7 +47,8 @@ def test_one_more_candela_is_worth_less_on_a_brighter_ground():
 
 def test_pu_psnr_is_a_psnr_with_a_peak_of_256():
     E = reference(1)
-    V, V_reference = pu21.encode(20.0 * E), pu21.encode(20.0 * reference())
+    V = pu21.encode(20.0 * E)
+    V_reference = pu21.encode(20.0 * reference())
     by_hand = 20 * np.log10(256 / np.sqrt(np.mean((V - V_reference) ** 2)))
     assert pu21.psnr(E, reference(), luminance_of_unit=20) == pytest.approx(by_hand)
 
@@ -67,16 +68,21 @@ def matlab_ssim(x, y):
         rows = correlate1d(image, window, axis=0, mode="nearest")
         return correlate1d(rows, window, axis=1, mode="nearest")
 
-    C1, C2 = (0.01 * 256) ** 2, (0.03 * 256) ** 2
-    mx, my = mean(x), mean(y)
-    sxx, syy, sxy = mean(x * x) - mx**2, mean(y * y) - my**2, mean(x * y) - mx * my
+    C1 = (0.01 * 256) ** 2
+    C2 = (0.03 * 256) ** 2
+    mx = mean(x)
+    my = mean(y)
+    sxx = mean(x * x) - mx**2
+    syy = mean(y * y) - my**2
+    sxy = mean(x * y) - mx * my
     similarity = (2 * mx * my + C1) * (2 * sxy + C2)
     return (similarity / ((mx**2 + my**2 + C1) * (sxx + syy + C2))).mean()
 
 
 @pytest.mark.parametrize("shape", [(48, 64), (12, 11), (5, 3)])
 def test_pu_ssim_is_that_of_matlab_which_the_authors_use(shape):
-    x, y = reference(0, shape), reference(1, shape)
+    x = reference(0, shape)
+    y = reference(1, shape)
     expected = matlab_ssim(*(pu21.encode(50 * E.astype(float)) for E in (x, y)))
     assert pu21.ssim(x, y, luminance_of_unit=50) == pytest.approx(expected, abs=1e-9)
 
@@ -97,10 +103,10 @@ def test_a_fitted_exposure_undoes_a_factor(s):
 
 def test_a_fitted_exposure_ignores_a_few_clipped_pixels_and_black_ones():
     E = reference()
-    found = E / 3
-    found[:4] = 0
-    found[-4:] = 100
-    assert pu21.fit_exposure(found, E) == pytest.approx(3, rel=1e-5)
+    estimate = E / 3
+    estimate[:4] = 0
+    estimate[-4:] = 100
+    assert pu21.fit_exposure(estimate, E) == pytest.approx(3, rel=1e-5)
 
 
 @pytest.mark.parametrize("score", [pu21.psnr, pu21.ssim])
@@ -116,8 +122,8 @@ def test_a_fitted_exposure_ignores_a_few_clipped_pixels_and_black_ones():
 )
 def test_more_damage_gives_a_lower_score(score, damage):
     E = reference()
-    found = [score(damage(E, k), E, luminance_of_unit=30) for k in range(4)]
-    assert np.all(np.diff(found) < 0)
+    scores = [score(damage(E, k), E, luminance_of_unit=30) for k in range(4)]
+    assert np.all(np.diff(scores) < 0)
 
 
 def test_pu_ssim_does_not_see_colors_and_pu_psnr_does():

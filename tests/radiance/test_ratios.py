@@ -13,13 +13,13 @@ SCHEMES = sorted(ratios.SCHEMES)
 
 
 def log_normal(seed=0, shape=(512, 512), spread=1.5):
-    """Return a scene whose ln E is normal, its brightest thousandth clipped at 1."""
+    """Return a scene with normally distributed ln E, of which the brightest thousandth is clipped at 1."""
     E = np.exp(np.random.default_rng(seed).normal(0, spread, shape))
     return np.minimum(E / np.quantile(E, 0.999), 1).astype(np.float32)
 
 
 def pair(E, truth, seed=0, **knobs):
-    """Return two photographs of a linear camera with noise of one level."""
+    """Return two photos of a linear camera whose noise is the same at all levels."""
     return camera.shoot(
         E, [1, truth], camera.Camera(response="linear", **{"gray_noise": 1.0} | knobs), rng=seed
     ).images
@@ -32,16 +32,20 @@ def pair(E, truth, seed=0, **knobs):
 def test_exact_equations_give_the_ratio_at_once(k, seed):
     rng = np.random.default_rng(seed)
     x = rng.uniform(16, 200, 40)
-    found = ratios.Equations(x, k * x, rng.uniform(0.1, 1, 40))
-    states = list(ratios.ratio_steps(found))
+    equations = ratios.Equations(x, k * x, rng.uniform(0.1, 1, 40))
+    states = list(ratios.ratio_steps(equations))
     assert np.isclose(states[0].k, k) and np.isclose(states[-1].k, k)
 
 
 def test_the_solution_is_the_least_squares_solution():
     rng = np.random.default_rng(0)
-    found = ratios.Equations(rng.uniform(1, 9, 30), rng.uniform(1, 9, 30), rng.uniform(0, 1, 30))
-    k = np.linalg.lstsq((found.v * found.x)[:, None], found.v * found.y, rcond=None)[0][0]
-    assert np.isclose(ratios.solve_ratio(found, np.ones(30, bool)), k)
+    equations = ratios.Equations(
+        rng.uniform(1, 9, 30), rng.uniform(1, 9, 30), rng.uniform(0, 1, 30)
+    )
+    k = np.linalg.lstsq(
+        (equations.v * equations.x)[:, None], equations.v * equations.y, rcond=None
+    )[0][0]
+    assert np.isclose(ratios.solve_ratio(equations, np.ones(30, bool)), k)
 
 
 def test_each_iteration_keeps_the_equations_below_the_error_limit_of_the_last():
@@ -49,8 +53,8 @@ def test_each_iteration_keeps_the_equations_below_the_error_limit_of_the_last():
     x = rng.uniform(16, 60, 200)
     y = 4 * x + rng.normal(0, 0.5, 200)
     y[:12] += 60
-    found = ratios.Equations(x, y, np.ones(200))
-    states = list(ratios.ratio_steps(found, limit=3.0))
+    equations = ratios.Equations(x, y, np.ones(200))
+    states = list(ratios.ratio_steps(equations, limit=3.0))
     for before, after in zip(states, states[1:], strict=False):
         errors = (y - before.k * x) ** 2
         assert np.array_equal(after.used, errors <= 3 * errors[before.used].mean())
@@ -61,7 +65,8 @@ def test_each_iteration_keeps_the_equations_below_the_error_limit_of_the_last():
 def test_the_papers_equations_are_biased_and_the_corrected_ones_are_not():
     light = (np.arange(400_000) + 0.5) / 400_000 * 240
     h = [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (0.25, 1)]
-    paper, corrected = (ratios.collect_equations(*h, scheme) for scheme in ("paper", "mid-step"))
+    paper = ratios.collect_equations(*h, "paper")
+    corrected = ratios.collect_equations(*h, "mid-step")
     assert np.isclose(np.median(paper.y - 4 * paper.x), 1.5, atol=0.01)
     whole = corrected.y < 236  # the light ends at 240, within a step of the darker frame
     assert np.abs(corrected.y - 4 * corrected.x)[whole].max() < 0.02
@@ -120,8 +125,10 @@ def test_all_channels_have_one_ratio():
 
 def test_masked_pixels_do_not_change_the_ratio():
     images = pair(log_normal(), 4)
-    spoiled, valid = images.copy(), np.ones(images.shape, bool)
-    spoiled[1, :, :100], valid[1, :, :100] = 90, False
+    spoiled = images.copy()
+    valid = np.ones(images.shape, bool)
+    spoiled[1, :, :100] = 90
+    valid[1, :, :100] = False
     assert ratios.estimate_ratios(spoiled, valid=valid) == ratios.estimate_ratios(
         images[:, :, 100:]
     )
@@ -160,12 +167,13 @@ def test_invalid_arguments_raise_an_error(images, knobs):
 
 def test_levels_without_pixels_give_no_equation():
     h = np.zeros((2, 256), int)
-    h[0, 20:50], h[1, 80:200:4] = 10, 10
-    found = ratios.collect_equations(*h)
-    assert found.x[:30].tolist() == list(range(20, 50)) and found.y[30:].tolist() == list(
+    h[0, 20:50] = 10
+    h[1, 80:200:4] = 10
+    equations = ratios.collect_equations(*h)
+    assert equations.x[:30].tolist() == list(range(20, 50)) and equations.y[30:].tolist() == list(
         range(80, 200, 4)
     )
-    assert np.allclose(found.y, 4 * found.x)
+    assert np.allclose(equations.y, 4 * equations.x)
 
 
 def test_iterations_end_when_the_ratio_no_longer_changes():
@@ -178,8 +186,8 @@ def test_iterations_end_when_the_ratio_no_longer_changes():
 def test_the_papers_scheme_uses_every_level_but_the_first_and_the_middle_scheme_no_dark_ones():
     h = np.ones(256)
     least = {
-        name: (found.x.min(), found.y.min())
+        name: (equations.x.min(), equations.y.min())
         for name in ratios.SCHEMES
-        for found in [ratios.collect_equations(h, h, name)]
+        for equations in [ratios.collect_equations(h, h, name)]
     }
     assert least["paper"] == pytest.approx((1, 1), abs=0.51) and least["mid-step"][1] >= 64

@@ -41,7 +41,9 @@ def test_channel_scales_do_not_depend_on_brightness_or_array_shape():
 
 
 def test_grays_stay_gray():
-    """A neutral pixel fixes the scales: the middles of three curves that saw white light are white."""
+    """A neutral pixel determines the scales: after scaling, the middle levels of the three curves are
+    gray.
+    """
     k = scales.fit_channel_scales([[0.2, 0.4, 0.8]], [[0.5, 0.5, 0.5]])
     assert np.allclose(k, [2, 1, 0.5], rtol=1e-5)
 
@@ -67,7 +69,7 @@ def test_inputs_without_chromaticity_raise_an_error(light, M):
 @pytest.mark.parametrize("n", [256, 65536])
 @pytest.mark.parametrize("gamma", [0.5, 1.0, 2.2])
 def test_the_snr_weight_of_a_power_law_is_proportional_to_the_level(gamma, n):
-    """f = M^gamma: f / f' = M / gamma, and gamma goes with the scale."""
+    """f = M^gamma: f / f' = M / gamma, and gamma cancels with the scale."""
     g = gamma * np.log(np.maximum(np.arange(n), 0.25) / (n // 2))
     w = weights.snr(g)
     inner = slice(n // 12, n - 8)
@@ -77,7 +79,10 @@ def test_the_snr_weight_of_a_power_law_is_proportional_to_the_level(gamma, n):
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
 def test_the_snr_weight_is_the_inverse_of_the_effect_of_noise(name):
-    """Noise of one level changes ln f by f' / f: weight times that is even over the levels."""
+    """Noise that is equal at all levels changes ln f by f' / f.
+
+    Times the weight, this is constant.
+    """
     g = responses.true_g(name)
     even = weights.snr(g)[20:240] * np.gradient(g)[20:240]
     assert np.ptp(even) < 0.1 * even.mean()
@@ -85,7 +90,8 @@ def test_the_snr_weight_is_the_inverse_of_the_effect_of_noise(name):
 
 def test_the_snr_weight_is_finite_and_positive_where_the_response_is_flat():
     g = responses.true_g("film").copy()
-    g[250:], g[60:75] = g[250], g[60]
+    g[250:] = g[250]
+    g[60:75] = g[60]
     w = weights.snr(g)
     assert np.all(np.isfinite(w)) and np.all(w[1:-1] > 0)
 

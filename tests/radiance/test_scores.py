@@ -1,4 +1,6 @@
-"""hdrlab.radiance.scores: metrics by their definitions, and an order that turns with metric, unit and fit."""
+"""hdrlab.radiance.scores: metrics by their definitions; the ranking depends on metric, unit and
+fit.
+"""
 
 import numpy as np
 import pytest
@@ -14,7 +16,8 @@ def test_psnr_is_relative_to_the_largest_value_of_the_reference():
 
 def test_log_psnr_is_the_psnr_after_the_mu_law():
     E = 1.5 * REFERENCE
-    T, T_reference = (np.log(1 + 5 * values) / np.log(5001) for values in (E, REFERENCE))
+    T = np.log(1 + 5 * E) / np.log(5001)
+    T_reference = np.log(1 + 5 * REFERENCE) / np.log(5001)
     expected = -10 * np.log10(np.mean((T - T_reference) ** 2))
     assert scores.log_psnr(E, REFERENCE) == pytest.approx(expected, rel=1e-6)
 

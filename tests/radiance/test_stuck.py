@@ -17,15 +17,19 @@ def pair(shape=(7, 9), dtype=np.uint8):
 @pytest.mark.parametrize("level", [255, 200, 0])
 def test_a_constant_pixel_that_differs_from_its_neighbors_is_stuck(dtype, where, level):
     short, long = pair(dtype=dtype)
-    short[where], long[where] = [level * (np.iinfo(dtype).max // 255)] * 2
+    short[where] = level * (np.iinfo(dtype).max // 255)
+    long[where] = level * (np.iinfo(dtype).max // 255)
     expected = np.zeros((7, 9), bool)
     expected[where] = True
     assert np.array_equal(find_stuck(short, long), expected)
 
 
 def test_one_stuck_channel_makes_a_stuck_pixel():
-    short, long = (np.repeat(frame, 3, axis=-1) for frame in pair())
-    short[2, 2, 1] = long[2, 2, 1] = 255
+    short, long = pair()
+    short = np.repeat(short, 3, axis=-1)
+    long = np.repeat(long, 3, axis=-1)
+    short[2, 2, 1] = 255
+    long[2, 2, 1] = 255
     assert np.argwhere(find_stuck(short, long)).tolist() == [[2, 2]]
 
 
@@ -43,13 +47,15 @@ def test_a_pixel_that_follows_the_exposure_or_does_not_stand_out_is_not_stuck(
     short_level, long_level
 ):
     short, long = pair()
-    short[3, 4], long[3, 4] = short_level, long_level
+    short[3, 4] = short_level
+    long[3, 4] = long_level
     assert not find_stuck(short, long).any()
 
 
 def test_two_adjacent_pixels_are_not_stuck():
     short, long = pair()
-    short[3, 4:6], long[3, 4:6] = 255, 255
+    short[3, 4:6] = 255
+    long[3, 4:6] = 255
     assert not find_stuck(short, long).any()
 
 

@@ -7,7 +7,8 @@ from hdrlab.capture import camera, responses
 from hdrlab.radiance.merge import CLIPPING_LEVEL, METHODS, merge_with_quality
 from hdrlab.radiance.uncertainty import inverse_variance_merge, merge_with_deviation, variance
 
-WELL, READ = 8_000, 6.0
+WELL = 8_000
+READ = 6.0
 LIGHT = np.geomspace(1e-3, 10, 30_000).reshape(150, 200)
 
 
@@ -30,15 +31,17 @@ def photographed(response, bits=8, rng=0, E=LIGHT):
 )
 def test_95_percent_of_pixels_in_each_decade_lie_within_1_96_deviations(response, bits):
     images, times, g, N, true = photographed(response, bits)
-    found = merge_with_deviation(images, times, g, N, READ)
-    inside = np.abs(found.E - true) < 1.96 * found.s
+    merged = merge_with_deviation(images, times, g, N, READ)
+    inside = np.abs(merged.E - true) < 1.96 * merged.s
     decade = np.floor(np.log10(LIGHT))
-    shares = [inside[(decade == one) & np.isfinite(found.s)].mean() for one in (-3, -2, -1, 0)]
+    shares = [
+        inside[(decade == exponent) & np.isfinite(merged.s)].mean() for exponent in (-3, -2, -1, 0)
+    ]
     assert np.allclose(shares, 0.95, atol=0.02), shares
 
 
 def draws_near_clipping(relation, frame):
-    """Return E / s errors z of 20,000 draws of a light by the clip level of a frame, five frames."""
+    """Return the errors z = (E - truth) / s of 20,000 draws near the clipping level, with five frames."""
     g = responses.true_g("linear", 256)
     whole = np.exp(g[-1])
     times = 4.0 ** np.arange(5)
@@ -46,9 +49,9 @@ def draws_near_clipping(relation, frame):
     E = relation * np.exp(g[level]) / whole / times[frame]
     sensor = camera.Camera(response="linear", bits=8, full_well=WELL, read_noise=READ)
     taken = camera.shoot(np.full((100, 200), E), times, sensor, rng=1)
-    found = merge_with_deviation(taken.images, taken.times, g, WELL / whole, READ)
-    known = np.isfinite(found.s)
-    return (found.E - E * whole)[known] / found.s[known]
+    merged = merge_with_deviation(taken.images, taken.times, g, WELL / whole, READ)
+    known = np.isfinite(merged.s)
+    return (merged.E - E * whole)[known] / merged.s[known]
 
 
 @pytest.mark.parametrize("relation", [0.96, 0.99, 1.005, 1.02])
@@ -70,41 +73,42 @@ def test_the_clip_level_of_a_longer_frame_hardly_biases_the_mean(relation, frame
 def test_the_deviation_of_light_in_the_middle_of_the_range_is_that_of_the_variances():
     g = responses.true_g("linear", 65536)
     images = np.full((1, 1, 1), 32_768, np.uint16)
-    found = merge_with_deviation(images, [1], g, N=1e4, R=5.0)
+    merged = merge_with_deviation(images, [1], g, N=1e4, R=5.0)
     V = variance(np.array(1.0), np.array(0.0), 1e4, 5.0)
-    assert found.s[0, 0] ** 2 == pytest.approx(float(V), rel=1e-3)
+    assert merged.s[0, 0] ** 2 == pytest.approx(float(V), rel=1e-3)
 
 
 @pytest.mark.parametrize("response", ["linear", "gamma", "film"])
 def test_the_inverse_variance_mean_has_the_smallest_error(response):
     images, times, g, N, true = photographed(response, rng=2)
-    found = merge_with_deviation(images, times, g, N, READ)
-    known = np.isfinite(found.s)
+    merged = merge_with_deviation(images, times, g, N, READ)
+    known = np.isfinite(merged.s)
 
     def error(E):
         return np.sqrt(np.mean((E / true - 1)[known] ** 2))
 
     others = [error(merge_with_quality(images, times, g, method=name).E) for name in METHODS]
-    assert error(found.E) < min(others)
+    assert error(merged.E) < min(others)
 
 
 def test_the_reported_deviation_equals_that_of_repeated_draws():
     flat = np.full((40, 50), 0.05)
     images, times, g, N, _ = photographed("linear", 16, rng=1, E=flat)
-    found = merge_with_deviation(images, times, g, N, READ)
-    assert found.E.std() == pytest.approx(np.median(found.s), rel=0.06)
+    merged = merge_with_deviation(images, times, g, N, READ)
+    assert merged.E.std() == pytest.approx(np.median(merged.s), rel=0.06)
 
 
 def test_with_photon_noise_only_the_relative_error_is_one_over_the_root_of_the_count():
     g = responses.true_g("linear", 65536)
     images = np.full((3, 1, 1), 20_000, np.uint16) * np.array([1, 2, 3], np.uint16)[:, None, None]
-    found = merge_with_deviation(images, [1, 2, 3], g, N=1e4)
+    merged = merge_with_deviation(images, [1, 2, 3], g, N=1e4)
     counted = 1e4 * np.exp(g[images]).sum()
-    assert found.s / found.E == pytest.approx(counted**-0.5, rel=1e-3)
+    assert merged.s / merged.E == pytest.approx(counted**-0.5, rel=1e-3)
 
 
 def test_the_variance_of_a_mean_of_equal_estimates_is_divided_by_their_number():
-    X, step = np.array([1.0, 2.0, 3.0]), np.full(3, np.sqrt(12 * 0.3))
+    X = np.array([1.0, 2.0, 3.0])
+    step = np.full(3, np.sqrt(12 * 0.3))
     E, s = inverse_variance_merge(X, step, np.ones(3, bool), np.ones(3), 1e12, 0)
     assert E == pytest.approx(2) and s**2 == pytest.approx(0.1)
     E, s = inverse_variance_merge(X, step, np.array([True, False, False]), [1, 1, 1], 1e12, 0)
@@ -120,11 +124,13 @@ def test_the_three_causes_of_noise_add_their_variances():
 
 def test_frame_order_does_not_matter_and_the_unit_of_time_scales_the_result():
     images, times, g, N, _ = photographed("film")
-    found = merge_with_deviation(images, times, g, N, READ)
+    merged = merge_with_deviation(images, times, g, N, READ)
     turned = merge_with_deviation(images[::-1], times[::-1], g, N, READ)
     slower = merge_with_deviation(images, 4 * times, g, N, READ)
-    for one, other, longer in zip(found, turned, slower, strict=True):
-        assert np.allclose(other, one, rtol=1e-5) and np.allclose(4 * longer, one, rtol=1e-5)
+    for expected, other, longer in zip(merged, turned, slower, strict=True):
+        assert np.allclose(other, expected, rtol=1e-5) and np.allclose(
+            4 * longer, expected, rtol=1e-5
+        )
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
@@ -132,28 +138,28 @@ def test_pixels_that_no_frame_measures_have_a_bound_and_an_infinite_deviation(ch
     images = np.array([[[40, 255, 0]], [[80, 255, 0]]], np.uint8)
     images = images.reshape(*images.shape, *[1] * len(channels)) + np.zeros(channels, np.uint8)
     g = responses.true_g("linear")
-    found = merge_with_deviation(images, [1, 2], g, 1000)
+    merged = merge_with_deviation(images, [1, 2], g, 1000)
     assert (
-        found.E.shape == found.s.shape == images.shape[1:]
-        and found.E.dtype == found.s.dtype == np.float32
+        merged.E.shape == merged.s.shape == images.shape[1:]
+        and merged.E.dtype == merged.s.dtype == np.float32
     )
-    assert np.isfinite(found.s[0, 0]).all() and np.isinf(found.s[0, 1:]).all()
-    assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
+    assert np.isfinite(merged.s[0, 0]).all() and np.isinf(merged.s[0, 1:]).all()
+    assert np.array_equal(merged.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
 
 def test_the_relative_error_rho_does_not_average_out():
     g = responses.true_g("linear", 65536)
     images = np.full((4, 1, 1), 30_000, np.uint16)
-    found = merge_with_deviation(images, np.ones(4), g, N=1e9, rho=0.02)
-    assert found.s / found.E == pytest.approx(0.02, rel=1e-3)
+    merged = merge_with_deviation(images, np.ones(4), g, N=1e9, rho=0.02)
+    assert merged.s / merged.E == pytest.approx(0.02, rel=1e-3)
 
 
 @pytest.mark.parametrize(("R", "counts"), [(0.0, False), (30.0, True)])
 def test_level_0_counts_as_measured_if_the_noise_exceeds_the_quantization_step(R, counts):
     images = np.array([[[0]], [[40]]], np.uint8)
-    found = merge_with_deviation(images, [1, 1], responses.true_g("linear"), N=1000, R=R)
+    merged = merge_with_deviation(images, [1, 1], responses.true_g("linear"), N=1000, R=R)
     alone = merge_with_deviation(images[1:], [1], responses.true_g("linear"), N=1000, R=R)
-    assert (found.E < alone.E) == (found.s < alone.s) == counts
+    assert (merged.E < alone.E) == (merged.s < alone.s) == counts
 
 
 def test_a_full_well_just_below_the_top_level_is_not_measured():
@@ -165,19 +171,19 @@ def test_a_full_well_just_below_the_top_level_is_not_measured():
     )  # the longer two are full
     assert (taken.images[1:] < 0.98 * 65535).any()
     g = responses.true_g("linear", 65536)
-    found = merge_with_deviation(taken.images, taken.times, g, 2_500 / np.exp(g[-1]), 20)
+    merged = merge_with_deviation(taken.images, taken.times, g, 2_500 / np.exp(g[-1]), 20)
     alone = merge_with_deviation(taken.images[:1], taken.times[:1], g, 2_500 / np.exp(g[-1]), 20)
-    assert np.array_equal(found.E, alone.E) and np.array_equal(found.s, alone.s)
+    assert np.array_equal(merged.E, alone.E) and np.array_equal(merged.s, alone.s)
 
 
 def test_each_channel_may_have_its_own_noise():
     images = np.array([[[[40, 40, 255]]], [[[80, 80, 255]]], [[[160, 160, 200]]]], np.uint8)
     g = responses.true_g("linear")
-    each = merge_with_deviation(images, [1, 2, 4], g, [100, 1000, 1000], [5, 0, 0])
-    assert np.isfinite(each.s).all() and each.s[0, 0, 0] > 3 * each.s[0, 0, 1]
+    merged = merge_with_deviation(images, [1, 2, 4], g, [100, 1000, 1000], [5, 0, 0])
+    assert np.isfinite(merged.s).all() and merged.s[0, 0, 0] > 3 * merged.s[0, 0, 1]
     for c, knobs in enumerate([(100, 5), (1000, 0), (1000, 0)]):
         alone = merge_with_deviation(images[..., c], [1, 2, 4], g, *knobs)
-        assert each.E[0, 0, c] == alone.E[0, 0] and each.s[0, 0, c] == alone.s[0, 0]
+        assert merged.E[0, 0, c] == alone.E[0, 0] and merged.s[0, 0, c] == alone.s[0, 0]
 
 
 @pytest.mark.parametrize(
