@@ -15,9 +15,9 @@ CUT = weights.cut(weights.hat())
 CURVES = sorted(responses.RESPONSES)
 
 
-def samples(N=40, P=5, seed=0, **knobs):
-    """Return Z (N, P) and B (P,) as the specification draws them: frames one and a half stops apart."""
-    return test_gsolve.samples(np.random.default_rng(seed), N, P, **knobs)
+def samples(N=40, P=5, seed=0, **arguments):
+    """Return Z (N, P) and B (P,) as the specification of the task draws them: frames 1.5 stops apart."""
+    return test_gsolve.samples(np.random.default_rng(seed), N, P, **arguments)
 
 
 # The system
@@ -33,10 +33,12 @@ def test_the_matrix_has_a_row_for_each_datum_one_for_the_gauge_and_one_for_each_
 
 
 def test_the_systems_rows_are_those_of_the_paper():
-    n, w = 8, np.array([0, 1, 2, 3, 3, 2, 1, 0])
+    n = 8
+    w = np.array([0, 1, 2, 3, 3, 2, 1, 0])
     A, b = debevec.system(np.array([[1, 3], [2, 5]]), np.array([0.5, 0.7]), 10, w)
     x = np.arange(n + 2) ** 2.0  # g and lE that are easy to tell apart
-    g, lE = x[:n], x[n:]
+    g = x[:n]
+    lE = x[n:]
     data = [
         w[1] * (g[1] - lE[0]),
         w[3] * (g[3] - lE[0]),
@@ -88,7 +90,7 @@ def test_levels_beyond_the_cut_repeat_the_last_constrained_value():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("changes", "message"),
     [
         ({"Z": [1, 2]}, r"expected levels Z \(N, P\) below 256"),
         ({"Z": [[0, 256]]}, "values 0 to 256"),
@@ -97,10 +99,10 @@ def test_levels_beyond_the_cut_repeat_the_last_constrained_value():
         ({"Z": [[100, 100]]}, "well exposed in two photos"),
     ],
 )
-def test_an_underdetermined_system_raises_an_error(given, said):
-    knobs = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | given
-    with pytest.raises(ValueError, match=said):
-        debevec.gsolve(**knobs)
+def test_an_underdetermined_system_raises_an_error(changes, message):
+    arguments = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | changes
+    with pytest.raises(ValueError, match=message):
+        debevec.gsolve(**arguments)
 
 
 def test_recover_finds_the_response_of_a_simulated_camera(seven_frames):

@@ -14,7 +14,8 @@ MODELS = {"table": grossberg.recover, "polynomial": grossberg.recover_polynomial
 
 
 def test_the_comparagram_counts_pairs_of_levels():
-    A, B = np.array([[1, 1], [2, 3]], np.uint8), np.array([[5, 5], [5, 250]], np.uint8)
+    A = np.array([[1, 1], [2, 3]], np.uint8)
+    B = np.array([[5, 5], [5, 250]], np.uint8)
     J = grossberg.comparagram(A, B)
     assert J.sum() == 4 and J[1, 5] == 2 and J[2, 5] == 1 and J[3, 250] == 1
 
@@ -36,11 +37,11 @@ def test_the_equations_hold_on_the_true_curve(seven_frames):
     _, taken = seven_frames("film")
     g = responses.true_g("film")
     w = weights.cut(weights.hat(), below=0.05)
-    found = grossberg.build_equations(transfer.histograms(taken.images)[0], taken.times, w)
-    miss = np.interp(found.T, np.arange(256), g) - g[found.m] + np.log(found.R)
+    equations = grossberg.build_equations(transfer.histograms(taken.images)[0], taken.times, w)
+    miss = np.interp(equations.T, np.arange(256), g) - g[equations.m] + np.log(equations.R)
     assert (
-        np.count_nonzero(found.weight) > 300
-        and np.sqrt(np.average(miss**2, weights=found.weight**2)) < 0.02
+        np.count_nonzero(equations.weight) > 300
+        and np.sqrt(np.average(miss**2, weights=equations.weight**2)) < 0.02
     )
 
 
@@ -75,8 +76,10 @@ def test_the_polynomial_obeys_the_laws_too(name, law):
 def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
-    images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
-    images[1:3, :, :20], valid[1:3, :, :20] = 90, False
+    images = taken.images.copy()
+    valid = np.ones(taken.images.shape, bool)
+    images[1:3, :, :20] = 90
+    valid[1:3, :, :20] = False
     g = grossberg.recover(taken.images[:, :, 20:], taken.times)
     assert np.allclose(grossberg.recover(images, taken.times, valid=valid), g, atol=1e-12)
 

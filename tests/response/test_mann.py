@@ -42,13 +42,19 @@ def test_a_power_law_is_found_to_a_tenth_of_a_percent_through_noise(gamma, seed,
 
 
 def test_the_black_level_alpha_must_be_given(decades):
-    E, alpha, gamma = decades(), 20, 0.6
+    E = decades()
+    alpha = 20
+    gamma = 0.6
     response = lambda X: alpha / 255 + (1 - alpha / 255) * X**gamma  # noqa: E731
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(response=response))
-    given, missing = (mann.recover(taken.images, taken.times, alpha=a) for a in (alpha, 0))
+    with_alpha = mann.recover(taken.images, taken.times, alpha=alpha)
+    without_alpha = mann.recover(taken.images, taken.times, alpha=0)
     truth = mann.power_law(gamma, alpha=alpha)
-    assert np.abs(given - truth)[40:].max() < 0.01 and np.abs(missing - truth)[40:].max() > 0.1
-    assert np.all(np.diff(given) >= 0) and np.all(np.isfinite(given))
+    assert (
+        np.abs(with_alpha - truth)[40:].max() < 0.01
+        and np.abs(without_alpha - truth)[40:].max() > 0.1
+    )
+    assert np.all(np.diff(with_alpha) >= 0) and np.all(np.isfinite(with_alpha))
 
 
 @pytest.mark.parametrize(("name", "low", "high"), [("srgb", 0.005, 0.05), ("film", 0.03, 0.2)])
@@ -98,7 +104,7 @@ def test_brackets_without_two_exposures_raise_an_error(images, times, knobs):
 
 
 def test_level_0_of_a_power_law_stands_for_a_quarter_of_a_level():
-    """Pixels of level 0 had from none to half a level of light: the middle of that is what they mean."""
+    """Level 0 means between 0 and half a level of light; a quarter is the middle of this range."""
     for gamma in (1.0, 0.45):
         assert mann.power_law(gamma)[0] == pytest.approx(np.log(0.25 / 128) / gamma)
 

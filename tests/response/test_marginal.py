@@ -17,18 +17,19 @@ SIGMA = 0.005
 def model(seed=0, count=60):
     """Return c, tau and nodes of a random camera."""
     rng = np.random.default_rng(seed)
-    c, tau = ambiguity.draw_curve(rng), np.array([-2.1, -1.4, -0.7, 0])
+    c = ambiguity.draw_curve(rng)
+    tau = np.array([-2.1, -1.4, -0.7, 0])
     return c, tau, likelihood.nodes(c, tau, count)
 
 
-def estimate(one):
-    """Return the paper's state and ours for a trial."""
-    paper = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
-    return paper, marginal.fit(one.Z, paper.c[0], paper.R, stated=STATED, trust=0.058)
+def estimate(trial):
+    """Return the state of the paper's method and that of ours for a trial."""
+    paper = last(mitsunaga.fit_steps(average(trial.Z)[None], STATED, 5))
+    return paper, marginal.fit(trial.Z, paper.c[0], paper.R, stated=STATED, trust=0.058)
 
 
 def test_level_probabilities_are_those_of_a_noisy_camera():
-    """Closed form against a million draws of noise, clamp and rounding, in the middle and at both ends."""
+    """The closed form, against a million draws of noise that are clamped and rounded."""
     rng = np.random.default_rng(0)
     m = np.array([[0.001, 0.5, 0.9975]])
     P = likelihood.table(m, SIGMA)[0]
@@ -65,39 +66,42 @@ def test_derivatives_of_the_prediction_are_its_differences(j):
     def shifted(sign):
         return likelihood.predict(c + sign * h[:4], tau + sign * np.append(h[4:], 0), at)[0]
 
-    up, down, J = shifted(1), shifted(-1), likelihood.predict(c, tau, at)[1]
+    up = shifted(1)
+    down = shifted(-1)
+    J = likelihood.predict(c, tau, at)[1]
     inside = (up < 1) & (down < 1)
     assert np.allclose(((up - down) / 2e-5)[inside], J[..., j][inside], atol=0.01)
 
 
 def test_the_scores_are_the_derivatives_of_the_likelihood():
-    one = ambiguity.draw_trial(np.random.default_rng(1), pixels=300)
-    theta = np.r_[one.c * 0.99, np.log(one.R[::-1]).cumsum()[::-1], np.log(SIGMA)]
-    at, near, p = marginal.begin(one.Z, theta, 3.0)
+    trial = ambiguity.draw_trial(np.random.default_rng(1), pixels=300)
+    theta = np.r_[trial.c * 0.99, np.log(trial.R[::-1]).cumsum()[::-1], np.log(SIGMA)]
+    at, near, p = marginal.begin(trial.Z, theta, 3.0)
     task = marginal.Task(at=at, near=near, prior=theta, stiffness=np.zeros((len(theta),) * 2))
     scores = marginal.evaluate(theta, p, task).scores.sum(axis=0)
     for j, h in enumerate(1e-6 * np.eye(len(theta))):
-        up, down = (marginal.evaluate(theta + sign * h, p, task).likelihood for sign in (1, -1))
+        up = marginal.evaluate(theta + h, p, task).likelihood
+        down = marginal.evaluate(theta - h, p, task).likelihood
         assert np.isclose((up - down) / 2e-6, scores[j], rtol=0.02, atol=2)
 
 
 def test_the_support_holds_nearly_all_of_the_likelihood():
     c, tau, _ = model(2)
-    one = ambiguity.draw_trial(np.random.default_rng(2), pixels=200)
-    at = likelihood.nodes(one.c, tau, 400)
-    P = likelihood.table(likelihood.predict(one.c, tau, at)[0], SIGMA)
+    trial = ambiguity.draw_trial(np.random.default_rng(2), pixels=200)
+    at = likelihood.nodes(trial.c, tau, 400)
+    P = likelihood.table(likelihood.predict(trial.c, tau, at)[0], SIGMA)
     p = np.full(len(at.x), 1 / len(at.x))
-    everything = np.prod([P[q][:, one.Z[:, q]] for q in range(4)], axis=0).sum(axis=0) / len(p)
-    near = likelihood.support(one.Z, P)
+    everything = np.prod([P[q][:, trial.Z[:, q]] for q in range(4)], axis=0).sum(axis=0) / len(p)
+    near = likelihood.support(trial.Z, P)
     assert np.allclose(
         np.exp(likelihood.posterior(P[near.cells], p, near)[0]), everything, rtol=1e-4
     )
 
 
 def test_every_step_raises_the_likelihood():
-    one = ambiguity.draw_trial(np.random.default_rng(3), pixels=2000)
-    start = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
-    states = list(marginal.fit_steps(one.Z, start.c[0], start.R))
+    trial = ambiguity.draw_trial(np.random.default_rng(3), pixels=2000)
+    start = last(mitsunaga.fit_steps(average(trial.Z)[None], STATED, 5))
+    states = list(marginal.fit_steps(trial.Z, start.c[0], start.R))
     second = 1 + next(i for i, state in enumerate(states) if state.promise < 0.01)
     for climb in (states[:second], states[second:]):  # each with nodes of its own
         assert np.all(np.diff([state.likelihood for state in climb]) >= 0)
@@ -105,8 +109,8 @@ def test_every_step_raises_the_likelihood():
 
 
 def test_the_noise_is_estimated_within_3_percent():
-    one = ambiguity.draw_trial(np.random.default_rng(4), sigma=0.008)
-    assert np.isclose(estimate(one)[1].sigma, 0.008, rtol=0.03)
+    trial = ambiguity.draw_trial(np.random.default_rng(4), sigma=0.008)
+    assert np.isclose(estimate(trial)[1].sigma, 0.008, rtol=0.03)
 
 
 @pytest.mark.papers
@@ -114,49 +118,51 @@ def test_it_is_more_accurate_than_the_published_scheme_on_its_trials():
     """The first 6 of the trials with the fixed seed; the benchmark runs all 100 and ten other seeds."""
     rng = np.random.default_rng(0)
     trials = [ambiguity.draw_trial(rng) for _ in range(6)]
-    states = [estimate(one) for one in trials]
+    states = [estimate(trial) for trial in trials]
     paper = [
-        ambiguity.mean_error(state.c[0], one.c)
-        for one, (state, _) in zip(trials, states, strict=True)
+        ambiguity.mean_error(state.c[0], trial.c)
+        for trial, (state, _) in zip(trials, states, strict=True)
     ]
     ours = [
-        ambiguity.mean_error(state.c, one.c) for one, (_, state) in zip(trials, states, strict=True)
+        ambiguity.mean_error(state.c, trial.c)
+        for trial, (_, state) in zip(trials, states, strict=True)
     ]
     assert np.median(ours) <= 0.2 and max(ours) <= 0.7
     assert np.median(ours) < 0.25 * np.median(paper)
-    for one, (_, state) in zip(trials, states, strict=True):
-        assert np.abs(state.R - one.R).max() < 0.01
+    for trial, (_, state) in zip(trials, states, strict=True):
+        assert np.abs(state.R - trial.R).max() < 0.01
 
 
 @pytest.mark.papers
 @pytest.mark.parametrize("seed", [1, 2])
 def test_starting_from_the_truth_gives_the_same_result(seed):
-    """So what error is left is noise, nearly all of it along u, and no start nearer by would mend it."""
-    one = ambiguity.draw_trial(np.random.default_rng(seed), pixels=4000)
-    found = estimate(one)[1]
-    from_truth = marginal.fit(one.Z, one.c, one.R, stated=STATED, trust=0.058)
-    assert abs(found.likelihood - from_truth.likelihood) < 0.1
-    assert np.abs(found.R - from_truth.R).max() < 5e-4
+    """So the remaining error is noise, nearly all of it along u; a better start would not reduce it."""
+    trial = ambiguity.draw_trial(np.random.default_rng(seed), pixels=4000)
+    from_fit = estimate(trial)[1]
+    from_truth = marginal.fit(trial.Z, trial.c, trial.R, stated=STATED, trust=0.058)
+    assert abs(from_fit.likelihood - from_truth.likelihood) < 0.1
+    assert np.abs(from_fit.R - from_truth.R).max() < 5e-4
     assert (
-        abs(ambiguity.mean_error(found.c, one.c) - ambiguity.mean_error(from_truth.c, one.c)) < 0.02
+        abs(ambiguity.mean_error(from_fit.c, trial.c) - ambiguity.mean_error(from_truth.c, trial.c))
+        < 0.02
     )
 
 
 def test_trusted_ratios_are_kept_and_the_curve_improves():
-    one = ambiguity.draw_trial(np.random.default_rng(1))
-    paper = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
-    state = marginal.fit(one.Z, paper.c[0], paper.R, stated=one.R, trust=1e-5)
-    assert np.allclose(state.R, one.R, atol=1e-4)
-    assert ambiguity.mean_error(state.c, one.c) < 0.1
+    trial = ambiguity.draw_trial(np.random.default_rng(1))
+    paper = last(mitsunaga.fit_steps(average(trial.Z)[None], STATED, 5))
+    state = marginal.fit(trial.Z, paper.c[0], paper.R, stated=trial.R, trust=1e-5)
+    assert np.allclose(state.R, trial.R, atol=1e-4)
+    assert ambiguity.mean_error(state.c, trial.c) < 0.1
 
 
 @pytest.mark.papers
 @pytest.mark.parametrize("seed", range(2))
 def test_the_ratios_of_the_canon_camera(seed):
     ratios = np.array([0.419, 0.292, 0.570, 0.512])
-    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=ratios)
-    start = last(mitsunaga.fit_steps(average(one.Z)[None], [0.5, 0.25, 0.5, 0.5], 5))
-    assert np.abs(marginal.fit(one.Z, start.c[0], start.R).R - ratios).max() < 0.005
+    trial = ambiguity.draw_trial(np.random.default_rng(seed), ratios=ratios)
+    start = last(mitsunaga.fit_steps(average(trial.Z)[None], [0.5, 0.25, 0.5, 0.5], 5))
+    assert np.abs(marginal.fit(trial.Z, start.c[0], start.R).R - ratios).max() < 0.005
 
 
 def test_a_simulated_camera_is_recovered():
@@ -165,7 +171,8 @@ def test_a_simulated_camera_is_recovered():
         E, camera.times_around(E, 3), camera.Camera(response="cubic", gray_noise=0.7)
     )
     (state,) = marginal.calibrate(taken.images, taken.times, order=5)
-    f, truth = np.exp(mitsunaga.curve(state.c)), np.exp(true_g("cubic"))
+    f = np.exp(mitsunaga.curve(state.c))
+    truth = np.exp(true_g("cubic"))
     assert np.sqrt(np.mean((f / f[-1] - truth / truth[-1]) ** 2)) < 0.005
 
 

@@ -18,7 +18,8 @@ from hdrlab.response.self_calibration import MAX_ORDER, average, calibrate, choo
 from hdrlab.show.plots.lectures import ambiguity
 
 STATED = np.full(3, 0.5)
-CANON, CANON_STATED = np.array([0.419, 0.292, 0.570, 0.512]), np.array([0.5, 0.25, 0.5, 0.5])
+CANON = np.array([0.419, 0.292, 0.570, 0.512])
+CANON_STATED = np.array([0.5, 0.25, 0.5, 0.5])
 
 
 @pytest.fixture(scope="module")
@@ -27,20 +28,20 @@ def papers():
 
 
 def clean(c, R, count=400):
-    """Return samples M (1, N, P) without noise or levels."""
+    """Return samples M (1, N, P) without noise and rounding."""
     exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
     return polynomial.brightness(np.geomspace(0.01, 1, count)[:, None] * exposures, c)[None]
 
 
 def published(seed, trials):
-    """Return the mean errors in per cent and the turns of trials of section 5."""
+    """Return the mean errors in percent and the numbers of iterations of the trials in section 5."""
     rng = np.random.default_rng(seed)
-    said = []
+    errors = []
     for _ in range(trials):
-        one = ambiguity.draw_trial(rng)
-        states = list(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
-        said.append((ambiguity.mean_error(states[-1].c[0], one.c), len(states)))
-    return np.array(said).T
+        trial = ambiguity.draw_trial(rng)
+        states = list(mitsunaga.fit_steps(average(trial.Z)[None], STATED, 5))
+        errors.append((ambiguity.mean_error(states[-1].c[0], trial.c), len(states)))
+    return np.array(errors).T
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 10])
@@ -100,8 +101,10 @@ def test_the_coefficients_are_the_least_squares_solution_of_equation_7():
 
 def test_gram_matrices_of_parts_add_up_and_contain_those_of_lower_orders():
     M = average(ambiguity.draw_trial(np.random.default_rng(2)).Z)
-    whole, *halves = (gram(*neighbours(part, MAX_ORDER), STATED) for part in (M, M[::2], M[1::2]))
-    assert np.allclose(whole, sum(halves))
+    whole = gram(*neighbours(M, MAX_ORDER), STATED)
+    even_rows = gram(*neighbours(M[::2], MAX_ORDER), STATED)
+    odd_rows = gram(*neighbours(M[1::2], MAX_ORDER), STATED)
+    assert np.allclose(whole, even_rows + odd_rows)
     assert np.allclose(gram(*neighbours(M, 4), STATED), whole[:4, :4])
 
 
@@ -123,7 +126,8 @@ def test_the_scheme_finds_the_same_polynomial_as_the_literal_one_of_the_paper():
 
 def test_a_pair_without_samples_keeps_its_initial_ratio():
     M = np.full((1, 30, 3), np.nan)
-    M[0, :, 1], M[0, :, 2] = np.linspace(0.1, 0.45, 30), np.linspace(0.2, 0.9, 30)
+    M[0, :, 1] = np.linspace(0.1, 0.45, 30)
+    M[0, :, 2] = np.linspace(0.2, 0.9, 30)
     state = last(mitsunaga.fit_steps(M, [0.3, 0.5], 2))
     assert state.R[0] == 0.3 and np.isclose(state.R[1], 0.5)
 
@@ -174,7 +178,10 @@ def test_the_chosen_order_respects_the_stated_times_for_a_power_law():
 
 
 def test_the_chosen_order_is_robust_to_motion_in_one_part_of_the_image():
-    """One of five parts shows a scene that moved: the fit to it swings, and the other four know better."""
+    """One of five parts of the image shows motion.
+
+    A high order fits this part, and cross-validation on the other four rejects it.
+    """
     rng = np.random.default_rng(9)
     c = ambiguity.draw_curve(rng, order=3)
     parts = [clean(c, STATED, 80) + 0.001 * rng.standard_normal((1, 80, 4)) for _ in range(5)]
@@ -186,7 +193,10 @@ def test_the_chosen_order_is_robust_to_motion_in_one_part_of_the_image():
     ("name", "low", "high"), [("window", 6, 8), ("frobisher", 5, 6), ("stlouis_arch", 4, 5)]
 )
 def test_the_chosen_order_for_real_photos_stays_low(name, low, high, photographs):
-    """Where the error of eq. 7 falls up to order 10, with maps up to a quarter of a stop off."""
+    """The error of eq.
+
+    7 decreases up to order 10, although those maps are wrong by up to a quarter of a stop.
+    """
     taken = photographs(name)
     step = max(1, taken.images.shape[1] // 400)
     for images in (
@@ -199,25 +209,31 @@ def test_the_chosen_order_for_real_photos_stays_low(name, low, high, photographs
 
 @pytest.mark.papers
 def test_for_measured_curves_the_chosen_order_is_better_than_any_fixed_one(measured_curves):
-    """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
+    """Of 51 curves, 95 % are within 3.8 % for order 5, 7 % for order 10, and 3.1 % for the chosen
+    order.
+    """
     exposure, brightness = measured_curves
-    true, errors = invert_curves(exposure, brightness)[::4], {None: [], 5: [], 10: []}
+    true = invert_curves(exposure, brightness)[::4]
+    errors = {None: [], 5: [], 10: []}
     for g, x, m in zip(true, exposure[::4], brightness[::4], strict=True):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
-        for order, found in errors.items():
-            found.append(
+        for order, curve_errors in errors.items():
+            curve_errors.append(
                 response_rmse(
                     self_calibration.find_response(taken.images, taken.times, order=order), g
                 )[0]
             )
-    median = {order: np.median(found) for order, found in errors.items()}
-    worst = {order: np.percentile(found, 95) for order, found in errors.items()}
+    median = {order: np.median(curve_errors) for order, curve_errors in errors.items()}
+    worst = {order: np.percentile(curve_errors, 95) for order, curve_errors in errors.items()}
     assert median[None] < 0.15 and median[None] < min(median[5], median[10])
     assert worst[None] < 4 and worst[None] < min(worst[5], worst[10])
 
 
 def test_the_published_trials_of_section_5():
-    """All 100, with the seed fixed: published are at most 2.7 % and fewer than 10 turns."""
+    """All 100 trials with a fixed seed.
+
+    The paper states at most 2.7 % and fewer than 10 iterations.
+    """
     errors, turns = published(0, 100)
     assert errors.max() <= 2.7 and turns.max() < 10
 
@@ -232,17 +248,18 @@ def test_other_seeds_stay_near_the_published_figure(seed):
 
 @pytest.mark.papers
 def test_early_stopping_improves_the_worst_trial_and_costs_accuracy_in_typical_ones():
-    """A thousand turns instead of five help most of the first ten trials, and ruin the 32nd."""
+    """A thousand iterations instead of five improve most of the first ten trials, and ruin the 32nd."""
     rng = np.random.default_rng(0)
-    stopped, driven = [], []
+    stopped = []
+    driven = []
     for k in range(32):
-        one = ambiguity.draw_trial(rng)
+        trial = ambiguity.draw_trial(rng)
         if k < 10 or k == 31:
-            M = average(one.Z)[None]
+            M = average(trial.Z)[None]
             for errors, knobs in ((stopped, {}), (driven, {"eps": 0, "max_iterations": 1000})):
                 errors.append(
                     ambiguity.mean_error(
-                        last(mitsunaga.fit_steps(M, STATED, 5, **knobs)).c[0], one.c
+                        last(mitsunaga.fit_steps(M, STATED, 5, **knobs)).c[0], trial.c
                     )
                 )
     assert np.median(driven[:10]) < np.median(stopped[:10]) / 2
@@ -250,7 +267,7 @@ def test_early_stopping_improves_the_worst_trial_and_costs_accuracy_in_typical_o
 
 
 def test_the_literal_scheme_drifts_along_the_exponential_ambiguity():
-    """The error rests, the curve leaves the truth, and stays on a power of the truth."""
+    """The error stays constant while the curve drifts from the truth to a power of the truth."""
     drift = ambiguity.measure_drift(ambiguity.draw_trial(np.random.default_rng(1)), STATED)
     assert drift.error.shape == drift.u.shape == (300,)
     assert drift.error[-1] <= drift.error[10] and abs(drift.u[-1] - 1) > 4 * abs(drift.u[10] - 1)
@@ -265,15 +282,19 @@ def test_figure_4_the_line_search_finds_the_ratio(seed, papers):
 
 
 def test_figure_4_noise_moves_the_minimum(papers):
-    quiet, noisy = papers.figure4(), papers.figure4(sigma=0.005)
+    quiet = papers.figure4()
+    noisy = papers.figure4(sigma=0.005)
     assert quiet.error.min() < 0.05 * noisy.error.min()
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_ratios_of_the_canon_camera_are_recovered_up_to_one_exponent(seed):
-    """A few turns mend what the stated ones contradict; what is left is u, which `marginal` finds, too."""
-    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
-    states = list(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))
+    """A few iterations correct the stated ratios.
+
+    The remaining error is u, which `marginal` estimates, too.
+    """
+    trial = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
+    states = list(mitsunaga.fit_steps(average(trial.Z)[None], CANON_STATED, 5))
     R = states[-1].R
     u = np.log(R).sum() / np.log(CANON).sum()
     assert len(states) < 10 and np.abs(R ** (1 / u) - CANON).max() < 0.005
@@ -281,7 +302,7 @@ def test_the_ratios_of_the_canon_camera_are_recovered_up_to_one_exponent(seed):
 
 
 def bracket(response="gamma", **knobs):
-    """Return five photographs of four decades of light."""
+    """Return five photos of light over four decades."""
     E = 10 ** np.random.default_rng(6).uniform(-2, 2, (80, 100))
     return camera.shoot(
         E,
@@ -317,13 +338,13 @@ def test_masked_pixels_do_not_change_the_response():
 
 def test_brackets_without_usable_pixels_raise_an_error():
     flat = np.full((20, 20), 100, np.uint8)
-    for images, times, said in (
+    for images, times, message in (
         ([flat], [1], "2 different exposure times"),
         ([flat, flat], [1, 1], "2 different exposure times"),
         ([flat * 0 + 2, flat * 0 + 254], [1, 2], "expected pixels "),
         ([flat * 0, flat * 0 + 255], [1, 2], "expected pixels "),
     ):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             self_calibration.find_response(np.stack(images), times)
 
 

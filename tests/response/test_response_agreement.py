@@ -34,17 +34,17 @@ ALL = FREE | FORMULAS
     [("window", 1.5, 0.1), ("frobisher", 3, 0.1), ("stlouis_arch", 8, 0.1)],
 )
 def test_on_real_brackets_curves_and_maps_agree(name, limit, apart, photographs):
-    """Curves to percents of the top exposure; maps, each channel's unit taken off, to a tenth of a stop.
-
-    The night scene has little blue light near the top, so there its curves differ most.
+    """Curves agree within percents of the top exposure, and maps within a tenth of a stop after scaling
+    each channel. The night scene has little blue light near the top, so there its curves differ
+    most.
     """
     taken = photographs(name)
     step = max(1, taken.images.shape[1] // 400)
     images = taken.images[:, ::step, ::step]
     g = {method: recover(images, taken.times) for method, recover in ALL.items()}
     maps = {
-        method: np.log2(merge(images, taken.times, one, weights.gaussian()))
-        for method, one in g.items()
+        method: np.log2(merge(images, taken.times, curve, weights.gaussian()))
+        for method, curve in g.items()
     }
     for a, b in combinations(ALL, 2):
         off = maps[a] - maps[b]

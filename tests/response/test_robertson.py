@@ -22,8 +22,10 @@ def samples(N=500, P=4, seed=0, top=255):
 
 
 def test_irradiance_is_the_weighted_mean_of_the_slide():
-    Z, t = np.array([[10, 100], [200, 250]]), np.array([0.5, 1.0])
-    f_inv, w = robertson.linear(), weights.hat()
+    Z = np.array([[10, 100], [200, 250]])
+    t = np.array([0.5, 1.0])
+    f_inv = robertson.linear()
+    w = weights.hat()
     for z, E in zip(Z, robertson.irradiance(Z, t, f_inv, w), strict=True):
         assert np.isclose(E, sum(w[z] * f_inv[z] * t) / sum(w[z] * t**2))
 
@@ -55,7 +57,8 @@ def test_the_iterations_end_at_the_tolerance_or_at_their_number(seven_frames):
 
 
 def test_level_0_and_levels_without_a_mean_or_beyond_the_cut_are_filled():
-    means, w = np.arange(256.0), WEIGHTS
+    means = np.arange(256.0)
+    w = WEIGHTS
     means[[0, 3, 100, 250, 255]] = 7, np.nan, np.nan, 9, np.nan
     filled = robertson.fill(means, w)
     assert np.array_equal(filled[1:250], np.arange(1, 250)) and np.all(filled[250:] == 249)

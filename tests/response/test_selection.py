@@ -10,7 +10,7 @@ INNER = (slice(2, -2), slice(2, -2))
 
 
 def noise(t, shape=(300, 300), sigma=0.01, seed=0):
-    """Return t frames of an even surface."""
+    """Return t frames of a uniform surface."""
     return np.random.default_rng(seed).normal(0.5, sigma, (t, *shape))
 
 
@@ -53,7 +53,7 @@ def test_the_test_rejects_the_fraction_psi_of_flat_patches(t, psi):
 
 
 def test_equation_12_read_literally_would_accept_an_edge_in_the_average():
-    """Eq. 12 read literally: an edge of one sigma passes, that the corrected test rejects."""
+    """Read literally, eq. 12 accepts an edge of one sigma; the corrected test rejects it."""
     A = noise(100, (60, 60))
     A[:, :, 30:] += 0.01
     mean, variance, _ = selection.temporal_average(A)
@@ -66,11 +66,11 @@ def test_equation_12_read_literally_would_accept_an_edge_in_the_average():
 def test_edges_and_the_border_are_not_flat():
     A = np.full((1, 40, 40), 0.3)
     A[:, :, 20:] = 0.6
-    found = selection.flat(A)
+    result = selection.flat(A)
     expected = np.zeros((40, 40), bool)
     expected[INNER] = True
     expected[:, 18:22] = False
-    assert np.array_equal(found, expected)
+    assert np.array_equal(result, expected)
 
 
 def test_quantisation_to_256_levels_does_not_spoil_the_test():
@@ -79,7 +79,7 @@ def test_quantisation_to_256_levels_does_not_spoil_the_test():
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: selection.flat(np.zeros((4, 4))), r"\(t, H, W\)"),
         (lambda: selection.flat(np.full((1, 4, 4), np.nan)), "finite frames"),
@@ -93,8 +93,8 @@ def test_quantisation_to_256_levels_does_not_spoil_the_test():
         ),
     ],
 )
-def test_invalid_arguments_raise_an_error(call, said):
-    with pytest.raises(ValueError, match=said):
+def test_invalid_arguments_raise_an_error(call, message):
+    with pytest.raises(ValueError, match=message):
         call()
 
 
@@ -107,8 +107,8 @@ def apertures(edge, shape=(240, 320), seed=0):
     E = rng.uniform(10, 240, shape)
     left = 1 - 0.4 * np.clip((selection.radius(shape) - edge) / 100, 0, 1)
     return [
-        np.round(one + rng.normal(0, 0.7, shape)).clip(0, 255).astype(np.uint8)
-        for one in (E / 2, E * left)
+        np.round(light + rng.normal(0, 0.7, shape)).clip(0, 255).astype(np.uint8)
+        for light in (E / 2, E * left)
     ]
 
 
@@ -129,8 +129,8 @@ def test_without_vignetting_the_circle_covers_the_whole_image(seed):
 
 
 def test_frames_may_have_a_single_pixel():
-    found = selection.temporal_average(np.array([[[0.2]], [[0.4]]]))
-    assert found.mean == pytest.approx(np.array([[0.3]])) and found.variance == pytest.approx(
+    average = selection.temporal_average(np.array([[[0.2]], [[0.4]]]))
+    assert average.mean == pytest.approx(np.array([[0.3]])) and average.variance == pytest.approx(
         np.array([[0.02]])
     )
 

@@ -38,32 +38,32 @@ def curves(measured):
 
 
 def test_components_are_orthonormal_and_ordered_by_spread():
-    found = space.fit_space(POWERS, 5)
-    assert np.allclose(found.H @ found.H.T, np.eye(5), atol=1e-12)
-    assert np.all(np.diff(found.sd) < 0)
+    fitted = space.fit_space(POWERS, 5)
+    assert np.allclose(fitted.H @ fitted.H.T, np.eye(5), atol=1e-12)
+    assert np.all(np.diff(fitted.sd) < 0)
 
 
 def test_reconstruction_is_exact_with_as_many_components_as_the_curves_span():
-    found = space.fit_space(POWERS, len(POWERS) - 1)
-    assert np.allclose(space.reconstruct(space.project(POWERS, found), found), POWERS, atol=1e-12)
+    fitted = space.fit_space(POWERS, len(POWERS) - 1)
+    assert np.allclose(space.reconstruct(space.project(POWERS, fitted), fitted), POWERS, atol=1e-12)
 
 
 def test_the_spread_is_that_of_the_coefficients():
-    found = space.fit_space(POWERS, 4)
-    assert np.allclose(space.project(POWERS, found).std(axis=0), found.sd)
+    fitted = space.fit_space(POWERS, 4)
+    assert np.allclose(space.project(POWERS, fitted).std(axis=0), fitted.sd)
 
 
 def test_noiseless_samples_determine_the_curve_exactly():
-    found = space.fit_space(POWERS, 3)
-    curve = space.reconstruct([0.4, -0.2, 0.05], found)
+    fitted = space.fit_space(POWERS, 3)
+    curve = space.reconstruct([0.4, -0.2, 0.05], fitted)
     at = np.linspace(0.05, 0.95, 9)
-    again = space.fit_samples(at, np.interp(at, X, curve), found, noise=1e-9)
+    again = space.fit_samples(at, np.interp(at, X, curve), fitted, noise=1e-9)
     assert np.allclose(again, curve, atol=1e-6)
 
 
 def test_with_infinite_noise_the_most_likely_curve_is_the_mean():
-    found = space.fit_space(POWERS, 3)
-    assert np.allclose(space.fit_samples([0.5], [0.9], found, noise=1e6), found.mean, atol=1e-9)
+    fitted = space.fit_space(POWERS, 3)
+    assert np.allclose(space.fit_samples([0.5], [0.9], fitted, noise=1e6), fitted.mean, atol=1e-9)
 
 
 def test_every_formula_rises_from_zero_to_one():
@@ -77,7 +77,8 @@ def test_every_formula_rises_from_zero_to_one():
 
 @pytest.mark.parametrize("gamma", [1.6, 2.4])
 def test_the_linear_toe_is_tangent_to_the_curve(gamma):
-    at, step = 0.05, 1e-6
+    at = 0.05
+    step = 1e-6
     M = np.array([at - step, at, at + step])
     below, here, above = families.toe(M, gamma, at)
     assert abs((above - here) - (here - below)) < 1e-4 * (here - below)
@@ -85,7 +86,8 @@ def test_the_linear_toe_is_tangent_to_the_curve(gamma):
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
 def test_the_default_space_contains_every_simulated_response(name):
-    basis, g = space.default_space(), responses.true_g(name)
+    basis = space.default_space()
+    g = responses.true_g(name)
     apart = np.exp(space.reconstruct(space.project(g, basis), basis)) - np.exp(g)
     assert np.abs(apart).max() < 0.01 * np.exp(g).max()
 
@@ -147,10 +149,10 @@ def test_components_fitted_to_201_curves_have_residuals_like_the_published_ones(
 
 
 def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, curves):
-    found = papers.five_samples(
+    errors = papers.five_samples(
         curves[::4], near=0.01
     )  # 51 of the 201, each by a prior of the other 50
-    assert found.mean() < 0.01
+    assert errors.mean() < 0.01
 
 
 def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
@@ -160,10 +162,13 @@ def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
 
 @pytest.mark.papers
 def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
-    """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
+    """51 of the 201 curves, none of them among the formulas, in 8 bits with noise.
+
+    The typical error is 0.4 %.
+    """
     errors = []
     for g, x, m in zip(
-        families.invert_curves(*measured)[::4], *(one[::4] for one in measured), strict=True
+        families.invert_curves(*measured)[::4], *(curves[::4] for curves in measured), strict=True
     ):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
@@ -171,20 +176,31 @@ def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prio
 
 
 def test_notebook_09_names_the_better_method_for_two_noisy_photos():
-    f, s = responses.RESPONSES["film"].f, responses.RESPONSES["srgb"].f
-    wave = lambda X: X ** (1 / 2.2) + 0.03 * np.sin(6 * np.pi * X ** (1 / 2.2))  # noqa: E731
-    cameras = {"film": "film", "srgb": "srgb", "mix": lambda X: (f(X) + s(X)) / 2, "wig": wave}
+    f = responses.RESPONSES["film"].f
+    s = responses.RESPONSES["srgb"].f
+
+    def mix_curves(X):
+        return (f(X) + s(X)) / 2
+
+    def draw_wave(X):
+        return X ** (1 / 2.2) + 0.03 * np.sin(6 * np.pi * X ** (1 / 2.2))
+
+    cameras = {"film": "film", "srgb": "srgb", "mix": mix_curves, "wig": draw_wave}
     sensor = {"sensitivity": 1 / 16, "full_well": 20_000, "read_noise": 5, "gray_noise": 2}
     workshop = scenes.workshop((128, 192))[..., 1]
     times = camera.times_around(workshop, 2, stops=2, sensitivity=1 / 16)
-    gsolve, ours = {}, {}
-    for name, each in cameras.items():
-        taken = camera.shoot(workshop, times, camera.Camera(response=each, **sensor), rng=4)
-        Z, true = taken.images, responses.true_g(each)
+    gsolve = {}
+    ours = {}
+    for name, response in cameras.items():
+        taken = camera.shoot(workshop, times, camera.Camera(response=response, **sensor), rng=4)
+        Z = taken.images
+        true = responses.true_g(response)
         for count in (100, 4000):
             knobs = {"samples": count, "choose": sampling.by_grid}
-            found = debevec.recover(Z, times, **knobs), space.recover(Z, times, noise=0.05, **knobs)
-            gsolve[name, count], ours[name, count] = (response_rmse(g, true)[0] for g in found)
+            by_gsolve = debevec.recover(Z, times, **knobs)
+            by_space = space.recover(Z, times, noise=0.05, **knobs)
+            gsolve[name, count] = response_rmse(by_gsolve, true)[0]
+            ours[name, count] = response_rmse(by_space, true)[0]
     for name in ("film", "srgb"):  # better, with half to two thirds of the error
         assert 0.45 < ours[name, 100] / gsolve[name, 100] < 0.7
     assert ours["mix", 100] > gsolve["mix", 100] and ours["mix", 4000] < gsolve["mix", 4000]
