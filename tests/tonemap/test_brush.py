@@ -41,7 +41,7 @@ def test_the_histogram_counts_values_out_of_range_in_the_end_bins():
 
 
 def test_noise_of_a_flat_wall_is_not_stretched():
-    """Noise of one percent would be stretched over the whole display, were there no least range."""
+    """Without a minimum range, noise of one percent would be stretched over the whole display."""
     noisy = 5 * (1 + 0.01 * np.random.default_rng(0).standard_normal((80, 80)))
     P = encode_srgb(brush.equalise(noisy.astype(np.float32)))
     assert np.ptp(P) < 0.5 and abs(np.median(P) - 0.5) < 0.1
@@ -50,7 +50,8 @@ def test_noise_of_a_flat_wall_is_not_stretched():
 def test_the_lens_shows_detail_of_a_dark_corner_that_the_global_operator_hides():
     L = np.full((200, 300), 1000.0)
     L[:60, :60] = 0.01 * np.where(np.indices((60, 60)).sum(axis=0) % 8 < 4, 1.0, 1.5)
-    whole, seen = brush.tonemap(L)[:60, :60], brush.lens(L, (30, 30), size=60)
+    whole = brush.tonemap(L)[:60, :60]
+    seen = brush.lens(L, (30, 30), size=60)
     assert np.ptp(whole) < 0.1 < 0.3 < np.ptp(seen)
 
 
@@ -77,10 +78,8 @@ def test_the_window_is_centered_and_shifted_inward_at_the_edge():
 
 def test_magnification_repeats_the_pixels_of_the_window():
     L = laws.scene()
-    small, large = (
-        brush.lens(L, (40, 60), size=20),
-        brush.lens(L, (40, 60), size=60, magnification=3),
-    )
+    small = brush.lens(L, (40, 60), size=20)
+    large = brush.lens(L, (40, 60), size=60, magnification=3)
     assert np.array_equal(large, small.repeat(3, axis=0).repeat(3, axis=1))
 
 
@@ -118,8 +117,9 @@ def test_invalid_lens_parameters_raise_an_error():
 
 
 def test_a_histogram_counts_every_pixel_once():
-    """As the plain sum over all pixels of what each gives to the two bins beside it."""
-    L, bins = np.maximum(laws.scene((101, 40)), 1e-3), 16
+    """Compared with a plain loop, in which each pixel contributes to its two nearest bins."""
+    L = np.maximum(laws.scene((101, 40)), 1e-3)
+    bins = 16
     t = np.clip((np.log(L) - np.log(0.01)) * bins / np.log(1e4) - 0.5, 0, bins - 1).ravel()
     plain = [np.maximum(1 - np.abs(t - j), 0).sum() / t.size for j in range(bins)]
     h = brush.histogram(brush.bin_position(L, 0.01, 100, bins), bins)

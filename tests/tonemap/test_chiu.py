@@ -41,7 +41,8 @@ def test_the_clamp_limits_the_result_to_white():
 
 
 def test_a_pass_is_the_mean_with_weights_one_two_one_clamped():
-    s, L = laws.scene((30, 40)), 3 * laws.scene((30, 40), 1)
+    s = laws.scene((30, 40))
+    L = 3 * laws.scene((30, 40), 1)
     kernel = np.outer([1, 2, 1], [1, 2, 1]) / 16
     assert np.allclose(
         chiu.smooth(s, L), np.minimum(convolve(s, kernel, mode="nearest"), 1 / L), rtol=1e-5
@@ -52,7 +53,7 @@ def test_a_pass_is_the_mean_with_weights_one_two_one_clamped():
 
 
 def test_every_state_is_its_equation():
-    """The first from a picture whose brightest pixel counts no more than the next."""
+    """The first pass starts from an image in which a single hot pixel does not set the scale."""
     L = laws.scene()
     states = list(chiu.tonemap_steps(L, headroom=2, sigma=4, passes=3))
     assert len(states) == 4
@@ -97,15 +98,17 @@ def test_a_smooth_scene_has_no_halo():
 def test_a_hot_pixel_does_not_darken_its_neighbourhood():
     L = laws.scene()
     for tonemap in (chiu.tonemap, fast.tonemap):
-        calm, hot = tonemap(L), tonemap(laws.hot_pixel(L))
+        calm = tonemap(L)
+        hot = tonemap(laws.hot_pixel(L))
         assert np.abs(hot - calm)[laws.hot_pixel(L) == L].max() < 0.1
 
 
 def test_the_default_blur_keeps_the_contrast_of_two_halves_that_a_narrow_one_removes():
-    """Why the default is 8 % of the picture: beyond the halo, textured halves keep some of their contrast."""
+    """Why the default is 8 % of the image: outside the halo, textured halves keep some contrast."""
     texture = np.exp(0.2 * np.random.default_rng(0).standard_normal((96, 128)))
     L = np.where(np.arange(128) < 64, 1.0, 30.0) * texture
-    narrow, wide = (chiu.tonemap(L, sigma=sigma) for sigma in (0.02 * 128, None))
+    narrow = chiu.tonemap(L, sigma=0.02 * 128)
+    wide = chiu.tonemap(L, sigma=None)
     ratios = [np.median(Ld[:, 64:80]) / np.median(Ld[:, 40:56]) for Ld in (narrow, wide)]
     assert ratios[1] > 1.5 * ratios[0]
     assert chiu.choose_sigma(L) == pytest.approx(0.08 * 128)

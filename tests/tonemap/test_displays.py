@@ -14,7 +14,7 @@ SIGNAL = np.linspace(0, 1, 1024)
 
 
 def test_pq_meets_the_points_that_its_reports_print():
-    """Of 10 bits, full range: ITU-R BT.2408 puts reference white, 203 cd/m2, at 58 %."""
+    """10 bits, full range: ITU-R BT.2408 puts reference white, 203 cd/m2, at 58 %."""
     assert transfer.pq(10_000) == 1 and transfer.pq(0) < 1e-6
     assert np.allclose(transfer.pq([100, 203, 1000]), [0.508, 0.581, 0.752], atol=5e-4)
 
@@ -39,7 +39,9 @@ def test_pq_and_hlg_rise_with_light():
 
 
 def test_a_12_bit_step_of_pq_is_below_the_visible_threshold():
-    """Of a ramp it sees some 0.5 % where it is bright, and 1 % at 1 cd/m2 [Barten99; BT.2246]."""
+    """In a ramp, the eye sees steps of about 0.5 % in bright light, and of 1 % at 1 cd/m2 [Barten99;
+    BT.2246].
+    """
     FD = transfer.pq_inverse(np.linspace(0, 1, 4096))
     step = np.diff(FD) / np.maximum(FD[:-1], 1e-9)
     assert step[FD[:-1] > 1].max() < 0.007 and step[FD[:-1] > 100].max() < 0.004
@@ -49,7 +51,8 @@ def test_pq_spends_more_codes_on_the_dark_than_a_gamma():
     def gamma(FD):
         return (FD / 10_000) ** (1 / 2.4)
 
-    dark, bright = (0.1, 1), (1000, 10_000)
+    dark = (0.1, 1)
+    bright = (1000, 10_000)
     assert transfer.codes(transfer.pq, *dark) > 6 * transfer.codes(gamma, *dark)
     assert transfer.codes(gamma, *bright) > 2 * transfer.codes(transfer.pq, *bright)
     assert transfer.codes(transfer.pq, 0, 10_000, bits=12) == pytest.approx(4095, abs=0.1)
@@ -68,7 +71,10 @@ def test_hlg_gamma_is_the_line_of_bt2100_in_its_range(peak):
 
 @pytest.mark.parametrize("peak", [1, 50, 100, 399, 2001, 4000, 10_000])
 def test_hlg_gamma_is_a_power_of_the_peak_outside_of_the_range(peak):
-    """BT.2390: 11.1 % for each doubling, so it is positive for each display, and black is black."""
+    """BT.2390: 11.1 % for each doubling.
+
+    It is positive for every display, and black stays black.
+    """
     assert transfer.system_gamma(peak) == pytest.approx(1.2 * (peak / 1000) ** np.log2(1.111))
     FD = transfer.display_light(np.linspace(0, 1, 50), peak=peak)
     assert FD[0] == 0 and np.all(np.diff(FD) > 0) and FD[-1] == pytest.approx(peak)
@@ -76,7 +82,8 @@ def test_hlg_gamma_is_a_power_of_the_peak_outside_of_the_range(peak):
 
 def test_hlg_gamma_has_no_large_step_at_the_ends_of_the_range():
     for end in transfer.LINE_PEAKS:
-        below, above = (transfer.system_gamma(end * factor) for factor in (0.999, 1.001))
+        below = transfer.system_gamma(end * 0.999)
+        above = transfer.system_gamma(end * 1.001)
         assert above == pytest.approx(below, abs=0.015)
 
 

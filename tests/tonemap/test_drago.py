@@ -62,7 +62,7 @@ def test_the_curve_overshoots_white_from_the_range_on_that_its_docstring_states(
 
 
 def test_the_curve_equals_that_of_pfstools():
-    """Theirs takes the maximum for white, and a log average whose floor for black is 1e-4."""
+    """pfstools uses the maximum as white, and a log average with a floor of 1e-4."""
     L = room()
     Lwa = float(np.exp(np.log(L.astype(np.float64) + 1e-4).mean()))
     for bias in (0.7, 0.85):
@@ -71,8 +71,8 @@ def test_the_curve_equals_that_of_pfstools():
 
 
 def test_the_operator_is_like_that_of_pfstools_whose_white_is_the_maximum():
-    found = likeness(drago.tonemap(room()), pfstmo("pfstmo_drago03", room()))
-    assert found.ssim > 0.98 and found.correlation > 0.999, found
+    comparison = likeness(drago.tonemap(room()), pfstmo("pfstmo_drago03", room()))
+    assert comparison.ssim > 0.98 and comparison.correlation > 0.999, comparison
 
 
 @pytest.mark.parametrize("bias", [0, -0.1, 1.01, np.nan, np.inf])

@@ -17,8 +17,8 @@ from hdrlab.tonemap import durand
 def test_a_flat_scene_has_no_detail_and_becomes_white(level):
     flat = np.full((20, 30), level)
     assert np.allclose(durand.tonemap(flat), 1, atol=0.03)
-    found = durand.layers(durand.logarithm(flat.astype(np.float32)), sigma_s=4)
-    assert np.abs(found.detail).max() < 0.012
+    layers = durand.layers(durand.logarithm(flat.astype(np.float32)), sigma_s=4)
+    assert np.abs(layers.detail).max() < 0.012
 
 
 def test_the_logarithm_has_the_base_ten_and_black_is_a_millionth_of_the_median():
@@ -28,8 +28,8 @@ def test_the_logarithm_has_the_base_ten_and_black_is_a_millionth_of_the_median()
 
 def test_base_and_detail_add_up_to_the_logarithm():
     lL = durand.logarithm(laws.scene())
-    found = durand.layers(lL, sigma_s=5)
-    assert np.allclose(found.base + found.detail, lL, atol=1e-6)
+    layers = durand.layers(lL, sigma_s=5)
+    assert np.allclose(layers.base + layers.detail, lL, atol=1e-6)
 
 
 @pytest.mark.parametrize("contrast", [10, 50, 200])
@@ -71,7 +71,7 @@ def _compressed(L):
 
 
 def test_a_flat_wall_beside_a_window_has_no_halo():
-    """Along a flat wall that ends at a bright window the picture is flat."""
+    """The image of a flat wall next to a bright window is flat."""
     L = np.where(np.arange(200) < 100, 1.0, 3000.0) * np.ones((100, 1))
     wall = durand.tonemap(L)[50, :100]
     assert wall.max() / wall.min() < 1.02
@@ -80,18 +80,18 @@ def test_a_flat_wall_beside_a_window_has_no_halo():
 def test_an_isolated_pixel_gets_the_base_of_its_neighborhood():
     lL = np.zeros((60, 80), np.float32)
     lL[30, 40] = 3
-    found = bilateral(lL, sigma_s=8, sigma_r=0.4)
+    filtered = bilateral(lL, sigma_s=8, sigma_r=0.4)
     for fix_uncertain in (durand.fix_uncertain, fast.fix_uncertain):
-        base = fix_uncertain(*found, sigma_s=8)
-        assert found.mean[30, 40] > 2.9 and base[30, 40] < 0.3
+        base = fix_uncertain(*filtered, sigma_s=8)
+        assert filtered.mean[30, 40] > 2.9 and base[30, 40] < 0.3
         assert np.abs(np.delete(base.ravel(), 30 * 80 + 40)).max() < 0.01, (
             "the others have enough of their kind"
         )
 
 
 def test_if_all_pixels_are_certain_the_base_is_the_bilateral_mean():
-    found = bilateral(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
-    assert durand.fix_uncertain(*found, sigma_s=8) is found.mean
+    filtered = bilateral(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
+    assert durand.fix_uncertain(*filtered, sigma_s=8) is filtered.mean
 
 
 def test_the_weight_of_the_mean_rises_with_the_logarithm_of_k():

@@ -106,7 +106,7 @@ def test_the_divergence_is_that_of_the_attenuated_gradient():
 
 
 def test_the_solution_is_that_of_a_sparse_direct_solver():
-    """And its residual is below 1e-5."""
+    """The residual of the solution is below 1e-5, too."""
     lL = fattal.log_luminance(laws.scene())
     f = fattal.divergence(lL, last(fattal.attenuation_steps(lL)).Phi).astype(np.float64)
     D = [
@@ -126,31 +126,37 @@ def test_the_solution_is_that_of_a_sparse_direct_solver():
 
 @pytest.mark.parametrize("beta", [0.8, 0.9])
 def test_changing_alpha_alone_is_a_global_gamma(beta):
-    """Phi gains (alpha2 / alpha1)^(1 - beta) per level, and lLd all of them."""
+    """Each level multiplies Phi by (alpha2 / alpha1)^(1 - beta), and lLd by the product of all levels."""
     L = laws.scene((150, 200))
     levels = len(list(fattal.attenuation_steps(fattal.log_luminance(L))))
     gamma = (0.4 / 0.1) ** ((1 - beta) * levels)
-    plain, other = solution(L, beta=beta), solution(L, beta=beta, alpha=0.4)
+    plain = solution(L, beta=beta)
+    other = solution(L, beta=beta, alpha=0.4)
     assert np.allclose(other, gamma * plain, atol=1e-4 * np.ptp(other))
 
 
 @pytest.mark.parametrize("turned", [np.fliplr, np.flipud, np.transpose, np.rot90])
 def test_flipping_and_transposing_commute_with_the_operator(turned):
-    """Thin lines, at which attenuation jumps; a side of 97 keeps its pixels in all levels of the pyramid."""
+    """Attenuation changes abruptly at thin lines.
+
+    A side of 97 keeps its pixels in all levels of the pyramid.
+    """
     L = laws.scene((97, 97))
-    L[::9], L[:, ::13] = 500, 300
+    L[::9] = 500
+    L[:, ::13] = 300
     assert np.allclose(fattal.tonemap(turned(L)), turned(fattal.tonemap(L)), atol=1e-3)
 
 
 def test_thin_lines_do_not_change_the_brightness_between_them():
-    """A gray wall behind bright lines one pixel wide is as bright at the left as at the right.
-
-    With Phi of one pixel for each step they are 28 nats apart, eight times the height of a line.
+    """A gray wall behind bright lines of one pixel has the same brightness on its left and on its
+    right. If each step used Phi of a single pixel, they would differ by 28 nats, eight times the
+    height of a line.
     """
     L = np.full((97, 193), 0.5, np.float32)
     L[:, 8:190:16] = 10
     lLd = solution(L)
-    field, line = lLd[:, 16:190:16].mean(axis=0), lLd[:, 8:190:16].mean()
+    field = lLd[:, 16:190:16].mean(axis=0)
+    line = lLd[:, 8:190:16].mean()
     assert np.ptp(field) < 0.01 * (line - field.mean())
 
 
@@ -180,13 +186,14 @@ def test_fine_bars_keep_their_ratio_on_either_side_of_a_huge_step():
     bars = np.where(np.arange(200) % 8 < 4, 1.0, 1.3) * np.ones((160, 1))
     L = np.where(np.arange(160)[:, None] < 80, 2000 * bars, 0.5 * bars)
     Ld = fattal.tonemap(L)
-    bright, dark = (Ld[rows, 60:140].mean(axis=0) for rows in (slice(20, 40), slice(120, 140)))
+    bright = Ld[20:40, 60:140].mean(axis=0)
+    dark = Ld[120:140, 60:140].mean(axis=0)
     assert bright.min() > 0.9 * dark.max(), "the light side stays the lighter one"
     assert dark.max() / dark.min() > 1.2 and dark.mean() > 100 * bright.mean() / 4000
 
 
 def test_twelve_megapixels_take_at_most_400_megabytes():
-    """Per pixel, which is what a smaller picture can show."""
+    """The limit is per pixel, so that a smaller image can show it."""
     L = laws.scene((800, 1200))
     tracemalloc.start()
     fast.tonemap(L)
@@ -196,19 +203,21 @@ def test_twelve_megapixels_take_at_most_400_megabytes():
 
 
 def pfstmo(L, *options):
-    """Return the luminance that pfstmo_fattal02 answers, through a pipe in the pfs format."""
+    """Return the luminance that pfstmo_fattal02 computes, through a pipe in the pfs format."""
     if not shutil.which("pfstmo_fattal02"):
         pytest.skip("pfstools is not installed")
     head = f"PFS1\n{L.shape[1]} {L.shape[0]}\n3\n0\n" + "".join(f"{c}\n0\n" for c in "XYZ") + "ENDH"
-    command, given = ["pfstmo_fattal02", *options], head.encode() + 3 * L.tobytes()
-    answer = subprocess.run(command, input=given, capture_output=True, check=True).stdout
+    command = ["pfstmo_fattal02", *options]
+    frames = head.encode() + 3 * L.tobytes()
+    answer = subprocess.run(command, input=frames, capture_output=True, check=True).stdout
     return np.frombuffer(answer[answer.index(b"ENDH") + 4 :], np.float32).reshape(3, *L.shape)[1]
 
 
 def test_the_picture_is_close_to_that_of_pfstools():
-    """Not equal: by its manual it works with a "detail level" that the paper does not have, here set to 0.
+    """They are not equal.
 
-    How it enlarges its levels, and where between two pixels it attenuates, may well differ too.
+    By its manual, pfstools has a "detail level" that the paper does not have, set to 0 here. It may
+    also enlarge its levels and place its attenuation in other ways.
     """
     L = laws.scene((240, 320))
     theirs = np.clip(pfstmo(L, "--detail-level", "0", "--alpha", "1", "--noise", "0"), 0, 1)

@@ -13,7 +13,7 @@ from hdrlab.tonemap import quality, reinhard
 
 
 def scene(shape=(192, 256), seed=0):
-    """Return luminance (H, W) of some decades with detail at all scales."""
+    """Return luminance (H, W) of several decades with detail at all scales."""
     rng = np.random.default_rng(seed)
     lL = sum(2**k * gaussian_filter(rng.standard_normal(shape), 2**k) for k in range(5))
     return np.exp(1.5 * lL).astype(np.float32)
@@ -24,31 +24,37 @@ def shown(L):
 
 
 def defined_S(x, y):
-    """Return S window by window, the mean taken off before squaring: slow, and without a shortcut."""
+    """Return S computed window by window, with the mean subtracted before squaring."""
     g = np.exp(-0.5 * (np.arange(-5, 6) / 1.5) ** 2)
-    w, S = np.outer(g, g) / g.sum() ** 2, 1.0
+    w = np.outer(g, g) / g.sum() ** 2
+    S = 1.0
     for f, weight in zip((16, 8, 4, 2, 1), (0.0448, 0.2856, 0.3001, 0.2363, 0.1333), strict=True):
         tau = 128 / (1.4 * 100 * 2.6 * (0.0192 + 0.114 * f) * np.exp(-((0.114 * f) ** 1.1)))
         total = []
         for i, j in np.ndindex(x.shape[0] - 10, x.shape[1] - 10):
-            a, b = x[i : i + 11, j : j + 11], y[i : i + 11, j : j + 11]
-            a, b = a - (w * a).sum(), b - (w * b).sum()
-            sa, sb, sab = np.sqrt((w * a * a).sum()), np.sqrt((w * b * b).sum()), (w * a * b).sum()
+            window_x = x[i : i + 11, j : j + 11]
+            window_y = y[i : i + 11, j : j + 11]
+            a = window_x - (w * window_x).sum()
+            b = window_y - (w * window_y).sum()
+            sa = np.sqrt((w * a * a).sum())
+            sb = np.sqrt((w * b * b).sum())
+            sab = (w * a * b).sum()
             pa, pb = norm.cdf([sa, sb], loc=tau, scale=tau / 3)
             seen = (2 * pa * pb + 0.01) / (pa**2 + pb**2 + 0.01)
             total.append(seen * (sab + 10) / (sa * sb + 10))
         S *= np.mean(total) ** weight
-        h, v = (side // 2 * 2 for side in x.shape)
-        x, y = (
-            (z[:h:2, :v:2] + z[1:h:2, :v:2] + z[:h:2, 1:v:2] + z[1:h:2, 1:v:2]) / 4 for z in (x, y)
-        )
+        h = x.shape[0] // 2 * 2
+        v = x.shape[1] // 2 * 2
+        x = (x[:h:2, :v:2] + x[1:h:2, :v:2] + x[:h:2, 1:v:2] + x[1:h:2, 1:v:2]) / 4
+        y = (y[:h:2, :v:2] + y[1:h:2, :v:2] + y[:h:2, 1:v:2] + y[1:h:2, 1:v:2]) / 4
     return S
 
 
 @pytest.mark.papers
 def test_structural_fidelity_is_its_definition():
     L = scene((177, 179))
-    x, y = quality.scale_luminance(L), quality.gray(shown(L))
+    x = quality.scale_luminance(L)
+    y = quality.gray(shown(L))
     assert quality.structural_fidelity(x, y) == pytest.approx(defined_S(x, y), rel=1e-6)
 
 
@@ -75,7 +81,7 @@ def test_quality_is_a_mean_of_powers(S, N):
 
 def test_the_eye_is_most_sensitive_at_eight_cycles_per_degree():
     f = np.arange(0.5, 40, 0.5)
-    assert 7 <= f[np.argmax([quality.sensitivity(one) for one in f])] <= 9
+    assert 7 <= f[np.argmax([quality.sensitivity(frequency) for frequency in f])] <= 9
     assert quality.sensitivity(8) == pytest.approx(100, abs=3), "100 is what the paper scales it to"
 
 
@@ -99,7 +105,8 @@ def test_an_image_has_full_structural_fidelity_to_its_own_luminance():
 
 
 def test_structural_fidelity_is_symmetric():
-    x, y = quality.gray(shown(scene())), quality.gray(shown(scene(seed=1)))
+    x = quality.gray(shown(scene()))
+    y = quality.gray(shown(scene(seed=1)))
     assert quality.structural_fidelity(x, y) == pytest.approx(quality.structural_fidelity(y, x))
 
 
@@ -124,7 +131,8 @@ def test_the_unit_and_the_black_level_of_the_scene_do_not_matter():
 )
 def test_more_damage_gives_a_lower_fidelity(worse):
     L = scene()
-    x, y = quality.scale_luminance(L), quality.gray(shown(L))
+    x = quality.scale_luminance(L)
+    y = quality.gray(shown(L))
     S = [quality.structural_fidelity(x, y)]
     S += [quality.structural_fidelity(x, worse(y, k)) for k in (1, 2, 3)]
     assert np.all(np.diff(S) < 0) and S[3] < 0.9 * S[0], S
@@ -132,8 +140,8 @@ def test_more_damage_gives_a_lower_fidelity(worse):
 
 def test_a_negative_has_a_fidelity_of_0():
     L = scene()
-    found = quality.tmqi(L, 255 - shown(L))
-    assert found.S == 0 and found.Q == pytest.approx(0.1988 * found.N**0.7088)
+    scores = quality.tmqi(L, 255 - shown(L))
+    assert scores.S == 0 and scores.Q == pytest.approx(0.1988 * scores.N**0.7088)
 
 
 def test_tone_mapping_beats_a_display_that_clips():
@@ -152,7 +160,7 @@ def test_naturalness_is_1_at_the_typical_mean_and_contrast_and_falls_with_the_de
 
 @pytest.mark.parametrize("shape", [(110, 121), (112, 130), (7, 40), (11, 11)])
 def test_padded_blocks_are_those_of_the_authors_program(shape):
-    """It calls MATLAB's blkproc, which fills up the picture with zeros and crops the result again."""
+    """The authors call MATLAB's blkproc, which pads the image with zeros and crops the result."""
     y = quality.gray(shown(scene(shape)))
     filled = np.zeros([-(-side // 11) * 11 for side in shape])
     filled[: shape[0], : shape[1]] = y
@@ -199,10 +207,12 @@ def test_an_unknown_treatment_of_edge_blocks_raises_an_error():
 )
 def test_a_small_picture_has_fewer_scales_and_they_share_the_weight(shape, scales):
     L = scene(shape)
-    x, y = quality.scale_luminance(L), quality.gray(shown(L))
-    found, weights = quality.scale_fidelities(x, y), quality.WEIGHTS[:scales]
-    assert len(found) == scales
-    log_S = np.dot(np.log(found), weights) / sum(weights)
+    x = quality.scale_luminance(L)
+    y = quality.gray(shown(L))
+    fidelities = quality.scale_fidelities(x, y)
+    weights = quality.WEIGHTS[:scales]
+    assert len(fidelities) == scales
+    log_S = np.dot(np.log(fidelities), weights) / sum(weights)
     assert quality.structural_fidelity(x, y) == pytest.approx(np.exp(log_S), rel=1e-3)
 
 
@@ -211,11 +221,11 @@ def test_quality_is_finite_and_from_0_to_1_for_any_radiance(name):
     L = laws.RADIANCES[name]
     noise = np.random.default_rng(0).integers(0, 256, L.shape, dtype=np.uint8)
     for picture in (shown(L), noise, noise * 0, noise // 128 * 255, np.stack([noise] * 3, axis=-1)):
-        assert all(0 <= one <= 1 + 1e-12 for one in quality.tmqi(L, picture))
+        assert all(0 <= score <= 1 + 1e-12 for score in quality.tmqi(L, picture))
 
 
 def test_rounding_in_a_bright_uniform_area_does_not_count_as_structure():
-    """At 2^32 even the rounding of a squared float64 would be visible: it would be a sigma of 60."""
+    """At 2^32, the rounding of a squared float64 would look like noise with a sigma of 60."""
     L = np.full((40, 60), 0.7, np.float32)
     L[:, :5] = 0
     L[:, 5:10] = 1
@@ -224,7 +234,7 @@ def test_rounding_in_a_bright_uniform_area_does_not_count_as_structure():
 
 
 @pytest.mark.parametrize(
-    ("L", "picture", "said"),
+    ("L", "picture", "message"),
     [
         (np.ones((4, 5)), np.zeros((5, 4), np.uint8), "scene's"),
         (np.ones((4, 5)), np.zeros((4, 5)), "uint8"),
@@ -233,6 +243,6 @@ def test_rounding_in_a_bright_uniform_area_does_not_count_as_structure():
         (np.ones((4, 5, 3)), np.zeros((4, 5), np.uint8), "luminance"),
     ],
 )
-def test_images_that_cannot_be_compared_raise_an_error(L, picture, said):
-    with pytest.raises(ValueError, match=said):
+def test_images_that_cannot_be_compared_raise_an_error(L, picture, message):
+    with pytest.raises(ValueError, match=message):
         quality.tmqi(L, picture)

@@ -32,7 +32,7 @@ MODES |= {
 @pytest.mark.parametrize("law", laws.ALWAYS, ids=lambda law: law.__name__)
 @pytest.mark.parametrize("mode", MODES)
 def test_every_mode_obeys_the_laws(mode, law):
-    """The lesson refuses what is no radiance, too, but does not count it."""
+    """The lesson also refuses invalid radiance, but it does not count the pixels."""
     if "lesson" in mode and law is laws.refuses_and_counts_invalid_radiance:
         for value in (np.nan, np.inf, -1.0):
             with pytest.raises(ValueError, match="luminance"):
@@ -104,9 +104,8 @@ def test_white_is_respected_in_both_modes(local):
 def test_a_higher_key_is_a_brighter_picture():
     L = laws.scene()
     for local in (False, True):
-        darker, brighter = (
-            reinhard.tonemap(L, key=key, white=np.inf, local=local) for key in (0.09, 0.36)
-        )
+        darker = reinhard.tonemap(L, key=0.09, white=np.inf, local=local)
+        brighter = reinhard.tonemap(L, key=0.36, white=np.inf, local=local)
         assert np.all(brighter > darker) or (local and np.mean(brighter > darker) > 0.98)
 
 
@@ -137,7 +136,7 @@ def test_the_widths_are_the_papers():
 
 
 def test_a_blur_has_the_papers_profile():
-    """exp(-r^2 / (alpha s)^2) with alpha = 1 / (2 sqrt 2), brought to the sum 1."""
+    """exp(-r^2 / (alpha s)^2) with alpha = 1 / (2 sqrt 2), normalized to the sum 1."""
     point = np.zeros((121, 121), np.float32)
     point[60, 60] = 1
     r2 = np.sum((np.indices(point.shape) - 60) ** 2, axis=0)
@@ -162,7 +161,8 @@ def test_a_neighbourhood_grows_until_it_meets_an_edge():
 def test_every_step_of_the_search_is_the_definition():
     Lm = reinhard.scale_to_key(laws.scene())
     V1 = list(reinhard.blurs(Lm))
-    even, adaptation = np.ones(Lm.shape, bool), V1[0]
+    even = np.ones(Lm.shape, bool)
+    adaptation = V1[0]
     for i, scale in enumerate(reinhard.scale_steps(V1)):
         V = (V1[i] - V1[i + 1]) / (2**8 * 0.18 / 1.6 ** (2 * i) + V1[i])
         even = even & (np.abs(V) < 0.05)
@@ -213,27 +213,29 @@ def test_dodge_and_burn_keeps_local_contrast_that_the_global_curve_flattens():
 
 
 def pfstmo(L, *options):
-    """Return the luminance that pfstmo_reinhard02 answers, through a pipe in the pfs format."""
+    """Return the luminance that pfstmo_reinhard02 computes, through a pipe in the pfs format."""
     if not shutil.which("pfstmo_reinhard02"):
         pytest.skip("pfstools is not installed")
     head = f"PFS1\n{L.shape[1]} {L.shape[0]}\n3\n0\n" + "".join(f"{c}\n0\n" for c in "XYZ") + "ENDH"
-    command, given = ["pfstmo_reinhard02", *options], head.encode() + 3 * L.tobytes()
-    answer = subprocess.run(command, input=given, capture_output=True, check=True).stdout
+    command = ["pfstmo_reinhard02", *options]
+    frames = head.encode() + 3 * L.tobytes()
+    answer = subprocess.run(command, input=frames, capture_output=True, check=True).stdout
     body = answer[answer.index(b"ENDH") + 4 :]
     return np.frombuffer(body, np.float32).reshape(3, *L.shape)[1]
 
 
 def test_the_global_curve_equals_that_of_pfstools():
-    """Its white is the brightest pixel, whatever that is."""
+    """pfstools always uses the brightest pixel as white."""
     L = laws.scene((120, 160))
     brightest = float(reinhard.scale_to_key(L).max())
     assert np.abs(reinhard.tonemap(L, white=brightest) - pfstmo(L)).max() < 1e-3
 
 
 def test_dodge_and_burn_is_close_to_pfstools():
-    """Not equal: its eight widths run from 1 to 43 in other steps."""
+    """They are not equal: the eight widths of pfstools run from 1 to 43 in other steps."""
     L = laws.scene((240, 320))
-    ours, theirs = reinhard.tonemap(L, white=np.inf, local=True), np.minimum(pfstmo(L, "-s"), 1)
+    ours = reinhard.tonemap(L, white=np.inf, local=True)
+    theirs = np.minimum(pfstmo(L, "-s"), 1)
     assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.98
     assert np.median(np.abs(ours - theirs)) < 0.02
 

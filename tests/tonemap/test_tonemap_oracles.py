@@ -39,19 +39,19 @@ WHITE = np.float32(
 
 
 class Likeness(NamedTuple):
-    """How much two displays are alike."""
+    """The similarity of two displayed images."""
 
     ssim: float
     correlation: float
 
 
 def pfstmo(tool, L, *options):
-    """Return the luminance (H, W) that an operator of pfstools answers, cut to [0, 1]."""
+    """Return the luminance (H, W) that an operator of pfstools computes, clipped to [0, 1]."""
     if not shutil.which(tool):
         pytest.skip(f"{tool} of pfstools is not installed")
     head = f"PFS1\n{L.shape[1]} {L.shape[0]}\n3\n0\n" + "".join(f"{c}\n0\n" for c in "XYZ") + "ENDH"
-    given = head.encode() + (WHITE[:, None, None] * L).astype("<f4").tobytes()
-    ran = subprocess.run([tool, *options], input=given, capture_output=True, timeout=120)
+    frames = head.encode() + (WHITE[:, None, None] * L).astype("<f4").tobytes()
+    ran = subprocess.run([tool, *options], input=frames, capture_output=True, timeout=120)
     if ran.returncode < 0:
         pytest.skip(
             f"{tool} dies of signal {-ran.returncode}, as that of Debian 12 is known to on some machines"
@@ -62,13 +62,15 @@ def pfstmo(tool, L, *options):
 
 
 def luminance_hdr(folder, L, *options):
-    """Return the luminance (H, W) that an operator of Luminance HDR answers, cut to [0, 1].
+    """Return the luminance (H, W) that an operator of Luminance HDR computes, clipped to [0, 1].
 
-    It is asked from the command line, without a screen, and keeps its settings in `folder`.
+    The program runs from the command line without a screen, and keeps its settings in `folder`.
     """
-    if not (program := shutil.which("luminance-hdr-cli")):
+    program = shutil.which("luminance-hdr-cli")
+    if program is None:
         pytest.skip("luminance-hdr-cli is not installed")
-    scene, picture = folder / "scene.hdr", folder / "picture.tif"
+    scene = folder / "scene.hdr"
+    picture = folder / "picture.tif"
     write_radiance(scene, np.repeat(L[..., None], 3, axis=-1))
     files = ("--load", scene, "--output", picture, "--ldrTiff", "32b", "--ldrTiffDeflate", "false")
     place = {"HOME": str(folder), "QT_QPA_PLATFORM": "offscreen"}
@@ -80,14 +82,15 @@ def luminance_hdr(folder, L, *options):
 
 
 def likeness(ours, theirs):
-    a, b = encode_srgb(ours), encode_srgb(theirs)
+    a = encode_srgb(ours)
+    b = encode_srgb(theirs)
     ssim = structural_similarity(a, b, data_range=1)
     return Likeness(float(ssim), float(np.corrcoef(a.ravel(), b.ravel())[0, 1]))
 
 
 @pytest.fixture(params=["room", "memorial", "lobby"])
 def L(request):
-    """The luminance of a scene: the simulated room everywhere, real places where they are at hand."""
+    """The luminance of a scene: the simulated room, and real places if their files are present."""
     if request.param == "room":
         return room()
     folder, file, step = {
@@ -108,7 +111,7 @@ def operator(name):
 
 
 def test_the_similarity_measure_distinguishes_an_image_from_a_flat_one_and_its_mirror():
-    """So that the bounds below mean something: SSIM and correlation of what is not alike are far below."""
+    """This gives the bounds below a meaning: SSIM and correlation of dissimilar images are far lower."""
     Ld = operator("reinhard").tonemap(room())
     assert likeness(Ld, Ld) == pytest.approx((1, 1))
     assert max(likeness(Ld, Ld[:, ::-1])) < 0.7
@@ -117,23 +120,26 @@ def test_the_similarity_measure_distinguishes_an_image_from_a_flat_one_and_its_m
 
 
 def test_reinhards_curve_equals_that_of_pfstools(L):
-    """Both are equation 4. Theirs takes the brightest pixel for white; ours leaves out one in ten thousand,
-    unless told, as it is here. What remains is their log average: its floor for black is another.
+    """Both are equation 4.
+
+    pfstools uses the brightest pixel as white. So does hdrlab in this test; by default it ignores
+    one pixel in ten thousand. The remaining difference is the floor of the log average for black
+    pixels.
     """
     reinhard = operator("reinhard")
     white = float(reinhard.scale_to_key(L).max())
-    found = likeness(reinhard.tonemap(L, white=white), pfstmo("pfstmo_reinhard02", L))
-    assert found.ssim > 0.99 and found.correlation > 0.999, found
+    comparison = likeness(reinhard.tonemap(L, white=white), pfstmo("pfstmo_reinhard02", L))
+    assert comparison.ssim > 0.99 and comparison.correlation > 0.999, comparison
 
 
 def test_reinhards_dodge_and_burn_is_like_pfstools(L):
-    """Theirs has no white in the local mode, so ours gets an infinite one.
+    """The local mode of pfstools has no white, so ours gets an infinite one.
 
-    Their eight widths run from 1 to 43 in other steps, so some pixels get another neighbourhood.
+    Its eight widths run from 1 to 43 in other steps, so some pixels get another neighborhood.
     """
     ours = operator("reinhard").tonemap(L, local=True, white=np.inf)
-    found = likeness(ours, pfstmo("pfstmo_reinhard02", L, "--scales"))
-    assert found.ssim > 0.95 and found.correlation > 0.99, found
+    comparison = likeness(ours, pfstmo("pfstmo_reinhard02", L, "--scales"))
+    assert comparison.ssim > 0.95 and comparison.correlation > 0.99, comparison
 
 
 def test_durands_compression_is_like_pfstools(L):
@@ -143,7 +149,8 @@ def test_durands_compression_is_like_pfstools(L):
     It also leaves a lone pixel's base as it is, where ours follows the paper and takes that of the
     neighbourhood.
     """
-    sigma_s, nats = 0.02 * max(L.shape), np.log(10)
+    sigma_s = 0.02 * max(L.shape)
+    nats = np.log(10)
     ours = operator("durand").tonemap(L, sigma_s=sigma_s, sigma_r=0.4, contrast=50)
     options = (
         "--sigma-s",
@@ -153,8 +160,8 @@ def test_durands_compression_is_like_pfstools(L):
         "--base-contrast",
         f"{np.log(50)}",
     )
-    found = likeness(ours, pfstmo("pfstmo_durand02", L, *options, "--original", "--quiet"))
-    assert found.ssim > 0.94 and found.correlation > 0.97, found
+    comparison = likeness(ours, pfstmo("pfstmo_durand02", L, *options, "--original", "--quiet"))
+    assert comparison.ssim > 0.94 and comparison.correlation > 0.97, comparison
 
 
 def test_fattals_compression_is_like_pfstools(L):
@@ -165,17 +172,17 @@ def test_fattals_compression_is_like_pfstools(L):
     slopes.
     """
     options = ("--alpha", "0.1", "--beta", "0.9", "--detail-level", "0", "--gamma", "1")
-    found = likeness(operator("fattal").tonemap(L), pfstmo("pfstmo_fattal02", L, *options))
-    assert found.ssim > 0.92 and found.correlation > 0.97, found
+    comparison = likeness(operator("fattal").tonemap(L), pfstmo("pfstmo_fattal02", L, *options))
+    assert comparison.ssim > 0.92 and comparison.correlation > 0.97, comparison
 
 
 def test_reinhards_curve_equals_that_of_luminance_hdr(L, tmp_path):
-    """Here even the log average is alike."""
+    """Here even the log averages agree."""
     reinhard = operator("reinhard")
     options = ("--tmo", "reinhard02", "--tmoR02Key", "0.18", "--tmoR02Scales", "false")
     ours = reinhard.tonemap(L, white=float(reinhard.scale_to_key(L).max()))
-    found = likeness(ours, luminance_hdr(tmp_path, L, *options))
-    assert found.ssim > 0.99 and found.correlation > 0.999, found
+    comparison = likeness(ours, luminance_hdr(tmp_path, L, *options))
+    assert comparison.ssim > 0.99 and comparison.correlation > 0.999, comparison
 
 
 def test_durands_compression_is_like_luminance_hdrs(L, tmp_path):
@@ -194,9 +201,10 @@ def test_durands_compression_is_like_luminance_hdrs(L, tmp_path):
     options = [word for knob, value in knobs.items() for word in (knob, f"{value:.6g}")]
     theirs = luminance_hdr(tmp_path, L, "--tmo", "durand", *options)
     ours = operator("durand").tonemap(L, sigma_s=0.02 * max(L.shape), sigma_r=0.4, contrast=50)
-    found, encoded = likeness(ours, theirs**2.2), likeness(ours, theirs)
-    assert found.ssim > 0.94 and found.correlation > 0.98, found
-    assert encoded.ssim < found.ssim
+    comparison = likeness(ours, theirs**2.2)
+    encoded = likeness(ours, theirs)
+    assert comparison.ssim > 0.94 and comparison.correlation > 0.98, comparison
+    assert encoded.ssim < comparison.ssim
 
 
 def test_fattals_compression_is_like_luminance_hdrs(L, tmp_path):
@@ -216,7 +224,7 @@ def test_fattals_compression_is_like_luminance_hdrs(L, tmp_path):
         "--tmoFatNoise",
         "0",
     )
-    found = likeness(
+    comparison = likeness(
         operator("fattal").tonemap(L), luminance_hdr(tmp_path, L, "--tmo", "fattal", *knobs)
     )
-    assert found.ssim > 0.88 and found.correlation > 0.89, found
+    assert comparison.ssim > 0.88 and comparison.correlation > 0.89, comparison

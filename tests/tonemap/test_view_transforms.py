@@ -24,7 +24,7 @@ def hue(C):
 
 
 def chroma(C):
-    """Return the range of the channels over the largest one: 0 is gray."""
+    """Return the range of the channels divided by the largest one; it is 0 for gray."""
     return np.ptp(C, axis=-1) / C.max(axis=-1)
 
 
@@ -45,7 +45,7 @@ def test_gray_stays_gray_and_a_brighter_gray_is_never_darker(name):
 
 @pytest.mark.parametrize("name", VIEWS)
 def test_a_bright_blue_light_becomes_white(name):
-    """A curve for each channel would leave the display's own blue as it is."""
+    """A curve for each channel would not change the display's own blue."""
     ends = chroma(VIEWS[name].view([[0, 0, 0.5], [0, 0, 1e5]]))
     assert ends[0] > 0.8 and ends[1] < 0.01
 
@@ -76,7 +76,7 @@ def test_the_sigmoid_of_agx_goes_through_black_middle_gray_and_white_with_slope_
 
 
 def test_the_sigmoid_of_agx_agrees_with_the_published_polynomial():
-    """Within 1.5 levels of 255. The polynomial falls near black; the sigmoid does not."""
+    """Within 1.5 levels of 255. The polynomial decreases near black; the sigmoid does not."""
     v = np.linspace(0, 1, 1001)
     assert np.abs(agx.sigmoid(v) - np.polyval(POLYNOMIAL, v)).max() < 1.5 / 255
     assert np.diff(agx.sigmoid(v)).min() > 0
@@ -102,7 +102,9 @@ def test_agx_shows_16_5_stops():
 
 
 def shift_toward_cyan(view):
-    """Return how far the hue has moved, in degrees, where the blue light has lost half of its color."""
+    """Return the change of the hue in degrees at the brightness where the blue light has lost half of
+    its color.
+    """
     C = view(BLUE)
     halfway = np.argmin(np.abs(chroma(C) - 0.5))
     return hue(BLUE[0]) - hue(C[halfway])

@@ -55,7 +55,8 @@ def test_trimming_cuts_to_the_ceiling_without_redistributing():
 
 
 def test_every_trim_computes_its_ceiling_from_the_previous_histogram():
-    h, db = uneven(), 0.07
+    h = uneven()
+    db = 0.07
     states = list(ward.adjust_steps(h, db, D))
     assert len(states) > 3 and np.array_equal(states[0].h, h)
     for before, after in zip(states, states[1:], strict=False):
@@ -73,8 +74,9 @@ def test_the_trims_stop_at_the_first_below_the_tolerance():
 
 
 def test_a_range_smaller_than_the_displays_empties_the_histogram():
-    """Then the ceilings together are below T, whatever T is."""
-    h, db = uneven(), 0.9 * D / 100
+    """Then the sum of all ceilings is below T for every T."""
+    h = uneven()
+    db = 0.9 * D / 100
     state = last(ward.adjust_steps(h, db, D))
     assert state.h.sum() <= 0.025 * h.sum()
 
@@ -109,14 +111,17 @@ def test_a_range_that_fits_the_display_is_mapped_linearly():
 
 
 def chart():
-    """Return a gray chart of few brightnesses, 7 decades apart with its lamp and its blackest patch."""
+    """Return a gray chart with few luminances, over 7 decades with its lamp and its darkest patch."""
     L = np.full((120, 160), 0.5)
-    L[:, :80], L[40:60, 20:40], L[80:90, 100:110], L[20:30, 120:130] = 0.3, 0.05, 1000, 1e-4
+    L[:, :80] = 0.3
+    L[40:60, 20:40] = 0.05
+    L[80:90, 100:110] = 1000
+    L[20:30, 120:130] = 1e-4
     return L
 
 
 def test_a_chart_with_few_brightnesses_is_not_black_beside_a_lamp():
-    """The linear map would be: 0.5 of 1000 is no level of 256."""
+    """The linear map would make it black: 0.5 of 1000 is less than one level of 256."""
     Ld = ward.tonemap(chart(), field=200)
     light = 99 * Ld + 1  # cd/m^2
     assert Ld[5, 100] > 0.05 and Ld.max() == pytest.approx(1, abs=1e-6)
@@ -143,9 +148,10 @@ def test_a_tolerance_too_small_to_stop_early_leaves_no_black_unused():
 
 
 def test_without_a_ceiling_all_brightnesses_are_equally_frequent():
-    """The formula itself, on a histogram that no trim has touched."""
+    """The formula itself, on a histogram that was not trimmed."""
     L = laws.scene((40, 50))
-    low, high = float(L.min()), float(L.max())
+    low = float(L.min())
+    high = float(L.max())
     h, db = ward.histogram(L, low=low, high=high, bins=1000)
     P = ward.cumulative(ward.Trim(h, np.inf, h.sum(), np.inf))
     at = np.interp(np.log(L), np.log(low) + db * np.arange(1001), P).ravel()
