@@ -12,7 +12,8 @@ FORMATS = {"jpg": "JPEG", "webp": "WEBP", "png": "PNG"}
 
 def tags(seconds=0.25, orientation=1):
     exif = Image.Exif()
-    exif[0x010F], exif[0x0112] = "Maker", orientation
+    exif[0x010F] = "Maker"
+    exif[0x0112] = orientation
     exif.get_ifd(0x8769).update({33434: seconds, 33437: 2.0, 34855: 80})
     return exif
 
@@ -31,7 +32,7 @@ def bracket_in(folder, times=(0.25, 1.0, 4.0), suffix="jpg", image=RGB):
 
 
 def read_noting(folder, *args):
-    """Return a bracket and the notes on it."""
+    """Return a bracket and the notes about it."""
     notes = []
     return read_bracket(folder, *args, note=notes.append), notes
 

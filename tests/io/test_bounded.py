@@ -22,7 +22,7 @@ LEVELS = np.arange(256)
 
 
 def two_parts(path):
-    """Write a file of two parts whose first one's pixels are damaged."""
+    """Write a file of two parts, of which the first has damaged pixels."""
     noise = np.random.default_rng(1).integers(0, 4, (64, 80, 3)).astype(np.float32)
     kind = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     parts = [OpenEXR.Part(dict(kind), {"RGB": noise + k}, name) for k, name in enumerate("ab")]
@@ -59,17 +59,18 @@ def test_huge_display_window_is_rejected_and_a_border_is_not(tmp_path):
 
 def test_reading_exr_files_in_threads_restores_stdout(tmp_path):
     radiance.write_radiance(tmp_path / "one.exr", np.ones((40, 50, 3)))
-    stream, before = sys.stdout, threading.active_count()
+    stream = sys.stdout
+    before = threading.active_count()
 
     def read():
         for _ in range(20):
             exr.read(tmp_path / "one.exr")
 
     threads = [threading.Thread(target=read) for _ in range(8)]
-    for each in threads:
-        each.start()
-    for each in threads:
-        each.join()
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
     assert sys.stdout is stream and threading.active_count() == before
 
 
@@ -105,9 +106,9 @@ def test_messages_contain_no_control_characters_and_are_short(tmp_path, capsys):
         ["assemble", tmp_path, "-o", "\x1b[31m.hdr", "--mask", "z" * 9000],
     ):
         with pytest.raises(SystemExit):
-            cli.run([str(one) for one in command])
-        said = capsys.readouterr().err
-        assert "\x1b" not in said and "\x07" not in said and len(said) < 2100
+            cli.run([str(argument) for argument in command])
+        message = capsys.readouterr().err
+        assert "\x1b" not in message and "\x07" not in message and len(message) < 2100
 
 
 @pytest.mark.parametrize("suffix", [".pfm", ".exr"])
@@ -196,6 +197,6 @@ def test_errors_for_lists_of_times_are_short(tmp_path):
     path = tmp_path / "times.txt"
     for line in ("a.jpg " + "9" * 5000, "a.jpg 1 " + "8" * 3000 + " 9 9", "a.jpg 3[" + "[" * 3000):
         path.write_text(line)
-        with pytest.raises(ValueError, match=r"times\.txt, line 1") as said:
+        with pytest.raises(ValueError, match=r"times\.txt, line 1") as error:
             times.read_times(path)
-        assert len(str(said.value)) < 500
+        assert len(str(error.value)) < 500

@@ -39,7 +39,8 @@ def bracket(tmp_path_factory):
 @pytest.mark.parametrize("suffix", FORMS)
 def test_curves_survive_a_round_trip(suffix, tmp_path):
     write_curve(tmp_path / f"g{suffix}", RGB)
-    f, g = np.exp(read_curve(tmp_path / f"g{suffix}")), np.exp(RGB)
+    f = np.exp(read_curve(tmp_path / f"g{suffix}"))
+    g = np.exp(RGB)
     assert f.shape == g.shape and np.allclose(f, g, rtol=EXACT[suffix], atol=1e-9)
 
 
@@ -72,7 +73,7 @@ def test_read_curve_shifts_curves_to_0_at_the_middle_pixel_value(tmp_path):
 
 
 def test_pixel_values_without_exposure_are_interpolated(tmp_path):
-    """pfstools writes 0, and -6 for its logarithm, where a calibration found nothing."""
+    """If a calibration has no result for a pixel value, pfstools writes 0, and -6 as its logarithm."""
     write_curve(tmp_path / "g.m", GRAY)
     lines = (tmp_path / "g.m").read_text().splitlines()
     for z in (0, 1, 100, 255):
@@ -99,7 +100,7 @@ def test_write_curve_rejects_invalid_responses(suffix, g, expected, tmp_path):
     with pytest.raises(ValueError, match=re.escape(expected)):
         write_curve(tmp_path / f"g{suffix}", g)
     assert (tmp_path / f"g{suffix}").read_text() == "precious"
-    assert [one.name for one in tmp_path.iterdir()] == [f"g{suffix}"]
+    assert [file.name for file in tmp_path.iterdir()] == [f"g{suffix}"]
 
 
 def test_suffix_selects_the_format():
@@ -178,7 +179,7 @@ def test_other_tables_are_rejected_as_curves(text, tmp_path):
 
 
 def pfstools(bracket, *options):
-    """Run pfshdrcalibrate on the bracket; return the map that it makes, or skip where it is not installed."""
+    """Run pfshdrcalibrate on the bracket and return its map; skip the test if it is not installed."""
     for program in ("pfsinhdrgen", "pfshdrcalibrate", "pfsout"):
         if not shutil.which(program):
             pytest.skip(f"{program} is not installed")
@@ -194,7 +195,7 @@ def pfstools(bracket, *options):
 
 
 def test_curves_can_be_exchanged_with_pfstools(bracket, tmp_path):
-    """Their map under our copy of their curve is theirs, up to a factor per channel."""
+    """With hdrlab's copy of pfstools' curve, both maps are equal up to a factor per channel."""
     theirs = pfstools(bracket, "-s", tmp_path / "theirs.m")
     g = read_curve(tmp_path / "theirs.m")
     assert g.shape == (256, 3) and np.all(g[200] > g[50])

@@ -27,10 +27,10 @@ def shoot(light, times=TIMES):
 def test_missing_rows_are_found_in_the_photo_that_lacks_them(frame, value):
     images = shoot(make_scene())
     images[frame, 70:] = value
-    found = find_damaged_bands(images)
-    assert all(band.frame == frame for band in found)
+    bands = find_damaged_bands(images)
+    assert all(band.frame == frame for band in bands)
     if (frame, value) not in ((0, 0), (3, 255)):  # there, dark or bright rows may be true
-        assert [(band.start, band.stop) for band in found] == [(70, 120)]
+        assert [(band.start, band.stop) for band in bands] == [(70, 120)]
 
 
 def test_missing_rows_are_found_with_wrong_times():

@@ -33,9 +33,9 @@ def damage(path, how):
 
 
 def read(paths, times):
-    told = []
-    bracket = photos.read_bracket(paths, times, note=told.append, warn=told.append)
-    return bracket, told
+    messages = []
+    bracket = photos.read_bracket(paths, times, note=messages.append, warn=messages.append)
+    return bracket, messages
 
 
 @pytest.mark.parametrize("how", [cut, zero_the_header])
@@ -45,12 +45,12 @@ def test_damaged_photo_is_left_out_and_named(folder, how, number, as_folder):
     paths = sorted(folder.glob("*.jpg"))
     sound, _ = read(paths, TIMES)
     damage(folder / f"{number}.jpg", how)
-    bracket, told = read(folder if as_folder else paths, TIMES)
+    bracket, messages = read(folder if as_folder else paths, TIMES)
     kept = [j for j in range(4) if j != number - 1]
     assert bracket.names == tuple(sound.names[j] for j in kept)
     np.testing.assert_array_equal(bracket.images, sound.images[kept])
     np.testing.assert_array_equal(bracket.times, sound.times[kept])
-    assert [f"{number}.jpg" in sentence for sentence in told] == [True]
+    assert [f"{number}.jpg" in sentence for sentence in messages] == [True]
     assert f"{number}.jpg" in " ".join(bracket.damaged)
 
 

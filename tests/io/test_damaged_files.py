@@ -1,4 +1,4 @@
-"""A damaged file is read, or it raises an HdrlabError or OSError; nothing else happens."""
+"""A damaged file is read, or it raises an HdrlabError or OSError."""
 
 from functools import partial
 from pathlib import Path

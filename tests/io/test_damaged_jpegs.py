@@ -45,7 +45,7 @@ def replace_bytes(data, place, new):
 
 
 def at(data, share):
-    """Return the place at a share of the coded pixels."""
+    """Return the position at a fraction of the coded pixels."""
     return MARKER_AND_TABLES_BYTES + int(share * (len(data) - MARKER_AND_TABLES_BYTES))
 
 

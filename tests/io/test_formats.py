@@ -37,12 +37,14 @@ NO_MAP = r": expected a radiance file \(\.hdr, .*\), got \."
 def pillow(form, mode="RGB", image=RGB, **knobs):
     if form == "AVIF":
         require_avif()
-    Image.fromarray(image).convert(mode).save(file := io.BytesIO(), form, **knobs)
+    file = io.BytesIO()
+    Image.fromarray(image).convert(mode).save(file, form, **knobs)
     return file.getvalue()
 
 
 def tiff(image, **knobs):
-    tifffile.imwrite(file := io.BytesIO(), image, photometric="rgb", **knobs)
+    file = io.BytesIO()
+    tifffile.imwrite(file, image, photometric="rgb", **knobs)
     return file.getvalue()
 
 
@@ -52,9 +54,8 @@ def glass():
 
 def heic(mode="RGB", image=RGB):
     module = pytest.importorskip("pillow_heif", reason="HEIC needs the extra `heic`")
-    module.from_bytes(mode, RGB.shape[1::-1], image.tobytes()).save(
-        file := io.BytesIO(), quality=-1
-    )
+    file = io.BytesIO()
+    module.from_bytes(mode, RGB.shape[1::-1], image.tobytes()).save(file, quality=-1)
     return file.getvalue()
 
 
@@ -73,15 +74,17 @@ def gains():
 
 
 def apples():
-    """Return two JPEGs, of which the second is named as Apple names its gains, and no more."""
+    """Return two JPEGs, of which the second has the name that Apple gives its gain maps, and no
+    metadata.
+    """
     named = b"http://ns.apple.com/HDRGainMap/1.0/"
     return pillow("JPEG") + pillow("JPEG", extra=b"\xff\xe1" + (len(named) + 2).to_bytes(2) + named)
 
 
 def raw(**knobs):
-    """Return a DNG: camera colours without a mosaic."""
+    """Return a DNG with camera colors, without a mosaic."""
     pytest.importorskip("rawpy", reason="RAW photographs need the extra `raw`")
-    matrix = [n for one in np.eye(3, dtype=int).ravel().tolist() for n in (one, 1)]
+    matrix = [n for numerator in np.eye(3, dtype=int).ravel().tolist() for n in (numerator, 1)]
     tags = [
         (50706, "B", 4, (1, 4, 0, 0), True),
         (50714, "H", 3, (0,) * 3, True),
@@ -103,7 +106,7 @@ def opencv(suffix):
 
 
 def exr():
-    """Return an OpenEXR file by its own library."""
+    """Return an OpenEXR file written by the official library."""
     OpenEXR = pytest.importorskip("OpenEXR", reason="OpenEXR is not installed")
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
     with tempfile.TemporaryDirectory() as folder, OpenEXR.File(header, {"RGB": E}) as file:
@@ -224,7 +227,7 @@ EACH = [
 
 
 def table():
-    """Return the cells of each row of the page's table, by what stands in the first."""
+    """Return the cells of each row of the page's table, by the first cell."""
     section = PAGE.read_text("utf-8").split("## Supported formats\n\n")[1].split("\n\n")[0]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines()]
     assert rows[0] == ["format", "as a photo of a bracket", "as a radiance map", "written"]
@@ -234,9 +237,13 @@ def table():
 def test_table_of_formats_lists_what_can_be_read():
     assert list(table()) == list(FILES)
     for row, (photograph, light, _) in table().items():
-        dtypes = [{one for _, _, *said in FILES[row] for one in said[k : k + 1]} for k in (0, 1)]
-        assert bool({"uint8", "uint16"} & dtypes[0]) == (photograph != "no"), row
-        assert ("float32" in dtypes[1]) == (light != "no"), row
+        photo_dtypes = set()
+        map_dtypes = set()
+        for _, _, *expected in FILES[row]:
+            photo_dtypes.update(expected[:1])
+            map_dtypes.update(expected[1:2])
+        assert bool({"uint8", "uint16"} & photo_dtypes) == (photograph != "no"), row
+        assert ("float32" in map_dtypes) == (light != "no"), row
 
 
 @pytest.mark.parametrize(("row", "name", "make", "photograph", "light"), EACH)
@@ -295,7 +302,11 @@ def test_table_of_formats_lists_what_can_be_written():
 
 @pytest.mark.parametrize(
     ("name", "options", "decode"),
-    [pytest.param(*one, id=f"{row[:8]}-{one[0]}") for row, many in WRITTEN.items() for one in many],
+    [
+        pytest.param(*case, id=f"{row[:8]}-{case[0]}")
+        for row, cases in WRITTEN.items()
+        for case in cases
+    ],
 )
 def test_other_programs_can_read_written_files(name, options, decode, tmp_path):
     if name.endswith(".avif"):
@@ -314,7 +325,7 @@ def test_other_programs_can_read_written_files(name, options, decode, tmp_path):
 
 
 def program(folder, *words):
-    """Return what a program of the system prints; skip where it is not installed."""
+    """Return the output of a program; skip the test if it is not installed."""
     if not shutil.which(words[0]):
         pytest.skip(f"{words[0]} is not installed")
     done = subprocess.run(words, cwd=folder, capture_output=True, check=True)
@@ -338,8 +349,12 @@ def test_djxl_reads_written_jxl_files_bit_for_bit(tmp_path):
     screens.write_jxl(tmp_path / "ours.jxl", E)
     program(tmp_path, "djxl", "ours.jxl", "theirs.pfm")
     assert np.array_equal(radiance.read_radiance(tmp_path / "theirs.pfm"), E)
-    said = program(tmp_path, "jxlinfo", "ours.jxl").decode()
-    assert "48x32" in said and "32-bit float" in said and "sRGB primaries, Linear transfer" in said
+    description = program(tmp_path, "jxlinfo", "ours.jxl").decode()
+    assert (
+        "48x32" in description
+        and "32-bit float" in description
+        and "sRGB primaries, Linear transfer" in description
+    )
 
 
 @pytest.mark.parametrize(
@@ -364,8 +379,11 @@ def test_jpeg_repacked_by_cjxl_keeps_pixels_and_exposure(tmp_path):
     (tmp_path / "a.jpg").write_bytes(pillow("JPEG", quality=95, exif=tags))
     program(tmp_path, "cjxl", "a.jpg", "a.jxl")
     assert b"brobExif" in (tmp_path / "a.jxl").read_bytes()
-    one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("a.jpg", "a.jxl"))
-    assert one.shape == other.shape == (48, 32, 3) and np.abs(one - other).mean() < 2
+    original = photos.read_photo(tmp_path / "a.jpg").astype(int)
+    repacked = photos.read_photo(tmp_path / "a.jxl").astype(int)
+    assert (
+        original.shape == repacked.shape == (48, 32, 3) and np.abs(original - repacked).mean() < 2
+    )
     assert (
         read_header(tmp_path / "a.jxl").exposure
         == read_header(tmp_path / "a.jpg").exposure
@@ -375,7 +393,7 @@ def test_jpeg_repacked_by_cjxl_keeps_pixels_and_exposure(tmp_path):
 
 @pytest.mark.parametrize("depth", [8, 16])
 def test_display_p3_of_jxl_is_converted_as_in_png(depth, tmp_path):
-    """Against the primaries' own matrix, in linear light [SMPTE EG 432-1, IEC 61966-2-1]."""
+    """Compared with the matrix of these primaries, in linear light [SMPTE EG 432-1, IEC 61966-2-1]."""
     levels = RGB if depth == 8 else DEEP
     (tmp_path / "a.ppm").write_bytes(
         b"P6\n48 32\n%d\n" % (2**depth - 1) + levels.astype(f">u{depth // 8}").tobytes()

@@ -23,15 +23,19 @@ def written(path, pixels, **knobs):
 
 
 def bits(*fields):
-    """Return fields of (value, bits), one after the other, as bytes."""
-    number, at = 0, 0
+    """Pack fields (value, bits), one after the other, into bytes."""
+    number = 0
+    at = 0
     for value, count in fields:
-        number, at = number | value << at, at + count
+        number = number | value << at
+        at = at + count
     return number.to_bytes((at + 7) // 8, "little")
 
 
 def header(*fields, frame=((1, 1),)):
-    """Return the headers of a bare codestream: these fields, and a frame, by default one as usual."""
+    """Return the headers of a bare codestream with these fields, and of a frame, by default a usual
+    one.
+    """
     return b"\xff\n" + bits(*fields) + bits(*frame) + bytes(40)
 
 
@@ -41,7 +45,7 @@ def header(*fields, frame=((1, 1),)):
     "knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str
 )
 def test_header_states_what_the_decoder_returns(dtype, knobs, tmp_path):
-    """All forms of a size: multiples of 8, each ratio of width and height, small, large, and gray."""
+    """All codings of a size: multiples of 8, each ratio of width to height, small, large, and gray."""
     shapes = [
         (8, 8, 3),
         (64, 48),
@@ -79,14 +83,15 @@ def test_lossless_photos_are_read_exactly(levels, tmp_path):
 
 
 def boxed(data, tags):
-    """Return a codestream in boxes, behind one of EXIF."""
+    """Return a codestream in boxes, after a box of EXIF."""
     boxes = [
         (b"JXL ", b"\r\n\x87\n"),
         (b"ftyp", b"jxl \0\0\0\0jxl "),
         (b"Exif", bytes(4) + tags.tobytes()[6:]),
     ]
     return b"".join(
-        struct.pack(">I4s", len(said) + 8, name) + said for name, said in [*boxes, (b"jxlc", data)]
+        struct.pack(">I4s", len(content) + 8, name) + content
+        for name, content in [*boxes, (b"jxlc", data)]
     )
 
 
@@ -94,13 +99,13 @@ def boxed(data, tags):
 def test_repacked_jpeg_is_upright(orientation, tmp_path):
     tags = Image.Exif()
     tags[0x0112] = orientation
-    Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(
-        file := io.BytesIO(), "JPEG", quality=98, exif=tags
-    )
+    file = io.BytesIO()
+    Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(file, "JPEG", quality=98, exif=tags)
     (tmp_path / "x.jpg").write_bytes(file.getvalue())
     (tmp_path / "x.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
-    one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("x.jpg", "x.jxl"))
-    assert one.shape == other.shape and np.abs(one - other).mean() < 2
+    original = photos.read_photo(tmp_path / "x.jpg").astype(int)
+    repacked = photos.read_photo(tmp_path / "x.jxl").astype(int)
+    assert original.shape == repacked.shape and np.abs(original - repacked).mean() < 2
 
 
 def test_exposure_is_from_exif_and_orientation_from_the_codestream(tmp_path):
@@ -109,8 +114,8 @@ def test_exposure_is_from_exif_and_orientation_from_the_codestream(tmp_path):
     tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
     (tmp_path / "x.jxl").write_bytes(boxed(imagecodecs.jpegxl_encode(RGB, lossless=True), tags))
     assert np.array_equal(imagecodecs.jpegxl_decode((tmp_path / "x.jxl").read_bytes()), RGB)
-    found = read_header(tmp_path / "x.jxl")
-    assert found.exposure == (0.5, 8.0, 200) and found.orientation == 1
+    header_read = read_header(tmp_path / "x.jxl")
+    assert header_read.exposure == (0.5, 8.0, 200) and header_read.orientation == 1
     assert np.array_equal(photos.read_photo(tmp_path / "x.jxl"), RGB)
 
 
@@ -140,15 +145,14 @@ def test_map_with_invalid_values_is_rejected_unless_cleaned(tmp_path):
 
 
 SIZE = [(0, 1), (0, 2), (11, 9), (0, 3), (0, 2), (16, 9)]  # 12 rows, 17 columns
-AS_USUAL, U8 = (
-    [(0, 1), (0, 1)],
-    [(0, 1), (0, 2), (1, 1), (0, 2), (1, 1)],
-)  # 8 bits, no more channels, XYB
+# 8 bits, no more channels, XYB
+AS_USUAL = [(0, 1), (0, 1)]
+U8 = [(0, 1), (0, 2), (1, 1), (0, 2), (1, 1)]
 SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
 
 
 @pytest.mark.parametrize(
-    ("fields", "said"),
+    ("fields", "message"),
     [
         (
             [*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4), (0, 1), (2, 2), (6, 4)],
@@ -166,11 +170,11 @@ SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
         ([(0, 1), (2, 2), (10_000, 18), (1, 3), (1, 1), (1, 1)], "cut short or damaged"),
     ],
 )
-def test_unsupported_jxl_files_are_rejected_before_decoding(fields, said, tmp_path, monkeypatch):
+def test_unsupported_jxl_files_are_rejected_before_decoding(fields, message, tmp_path, monkeypatch):
     monkeypatch.delattr(imagecodecs, "jpegxl_decode")
     (tmp_path / "odd.jxl").write_bytes(header(*fields))
     for read in (photos.read_photo, radiance.read_radiance):
-        with pytest.raises(ValueError, match=rf"odd\.jxl: .*{said}") as refused:
+        with pytest.raises(ValueError, match=rf"odd\.jxl: .*{message}") as refused:
             read(tmp_path / "odd.jxl")
         assert "\n" not in str(refused.value)
 
@@ -241,11 +245,11 @@ def test_frames_with_several_passes_are_accepted(passes, tmp_path):
 
 
 def test_codestream_is_read_from_its_own_boxes_only(tmp_path):
-    """What looks like a codestream within EXIF is none; and what several boxes hold is one."""
-    data, decoy = (
-        imagecodecs.jpegxl_encode(RGB, lossless=True),
-        b"jxlc" + header(*SIZE, (1, 1), (1, 1)),
-    )
+    """Bytes inside EXIF that look like a codestream are ignored; a codestream in several boxes is
+    joined.
+    """
+    data = imagecodecs.jpegxl_encode(RGB, lossless=True)
+    decoy = b"jxlc" + header(*SIZE, (1, 1), (1, 1))
     big = header((0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1))
     for name, parts in (
         ("good", [(0, data[:9]), (1 << 31 | 1, data[9:])]),
@@ -253,7 +257,7 @@ def test_codestream_is_read_from_its_own_boxes_only(tmp_path):
     ):
         boxes = [(b"JXL ", b"\r\n\x87\n"), (b"ftyp", b"jxl \0\0\0\0jxl "), (b"Exif", decoy)]
         boxes += [(b"jxlp", struct.pack(">I", number) + part) for number, part in parts]
-        box = [struct.pack(">I4s", len(said) + 8, kind) + said for kind, said in boxes]
+        box = [struct.pack(">I4s", len(content) + 8, kind) + content for kind, content in boxes]
         (tmp_path / f"{name}.jxl").write_bytes(b"".join(box))
     assert np.array_equal(photos.read_photo(tmp_path / "good.jxl"), RGB)
     with pytest.raises(ValueError, match=r"big\.jxl: its header claims .*expected at most"):

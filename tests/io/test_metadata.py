@@ -98,7 +98,7 @@ def jxl(*, compressed):
 
 
 def tiff_directory(entries, offset, next_offset=0):
-    """Return a directory of (tag, type, count, value), and its values behind it."""
+    """Return a directory of (tag, type, count, value), followed by its values."""
     table = struct.pack("<H", len(entries))
     values = b""
     values_offset = offset + 2 + 12 * len(entries) + 4
@@ -234,8 +234,8 @@ EVERY_FILE = PHOTOS | RAW_STRUCTURES
 
 
 def has_personal_data(data):
-    found = [secret for secret in SECRETS if secret in data]
-    return found + [packed for packed in PACKED_LATITUDES if packed in data]
+    secrets = [secret for secret in SECRETS if secret in data]
+    return secrets + [packed for packed in PACKED_LATITUDES if packed in data]
 
 
 @pytest.mark.parametrize("name", EVERY_FILE)

@@ -34,13 +34,13 @@ def exif(orientation=1, *, seconds=None, f_number=None, iso=None):
 
 
 def save(path, image, **tags):
-    """Write with Pillow, EXIF included."""
+    """Write an image with Pillow, with EXIF."""
     Image.fromarray(image).save(path, exif=exif(**tags))
     return path
 
 
 def png(path, width, height, depth=8, kind=2, *chunks):
-    """Write a PNG of any header, with a pixel or two."""
+    """Write a PNG with any header and one or two pixels."""
     data = b"\x89PNG\r\n\x1a\n"
     ihdr = struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, 0)
     for name, body in (b"IHDR", ihdr), *chunks, (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b""):
@@ -64,7 +64,8 @@ def test_png_keeps_every_bit_that_opencv_wrote(tmp_path, name):
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5, 3), (13, 21), (13, 21, 3), (70, 300, 3)])
 def test_png_is_written_so_that_opencv_and_pillow_read_every_bit(tmp_path, shape):
-    image, path = RNG.integers(0, 256, shape, np.uint8), tmp_path / "x.png"
+    image = RNG.integers(0, 256, shape, np.uint8)
+    path = tmp_path / "x.png"
     write_picture(path, image)
     read = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
     assert np.array_equal(read[..., ::-1] if image.ndim == 3 else read, image)
@@ -115,7 +116,7 @@ def test_exif_orientation_is_applied(tmp_path, orientation, suffix, name):
 
 
 def tiff_with_exif(path):
-    """Write a TIFF whose EXIF stands in a directory of its own, which neither Pillow nor tifffile writes."""
+    """Write a TIFF with EXIF in a directory of its own; neither Pillow nor tifffile can write this."""
     tifffile.imwrite(path, RGB8, photometric="rgb", extratags=[(65000, "I", 1, 0x7A7A7A7A, True)])
     data = path.read_bytes()
     at = len(data) + len(data) % 2
@@ -467,7 +468,8 @@ def test_write_picture_rejects_other_arrays_and_suffixes(tmp_path, name, image):
 )
 def test_real_brackets_have_the_times_of_their_exif(shared, name, frames):
     folder = shared(name)
-    bracket, listed = read_bracket(folder), read_bracket(folder, folder / "exposures.csv")
+    bracket = read_bracket(folder)
+    listed = read_bracket(folder, folder / "exposures.csv")
     assert len(bracket.images) == frames and bracket.names == listed.names
     assert bracket.times == pytest.approx(listed.times, rel=1e-3)
     theirs = cv2.imread(str(folder / bracket.names[0]))

@@ -26,7 +26,7 @@ DAMAGED_PNG = (
 
 
 def damaged_exr(path):
-    """Write an OpenEXR file with a row of the wrong number: the library prints an error."""
+    """Write an OpenEXR file with a wrong row number, for which the library prints an error."""
     header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.NO_COMPRESSION}
     with OpenEXR.File(header, {"RGB": np.ones((9, 5, 3), np.float32)}) as file:
         file.write(str(path))
@@ -47,8 +47,8 @@ def test_reading_a_damaged_photo_prints_nothing_of_the_codecs(tmp_path):
     (tmp_path / "x.png").write_bytes(base64.b64decode(DAMAGED_PNG))
     read = "import sys; from hdrlab.io.photos import read_photo; read_photo(sys.argv[1])"
     command = [sys.executable, "-c", read, str(tmp_path / "x.png")]
-    said = subprocess.run(command, capture_output=True, text=True).stderr
-    assert "x.png: it is cut short" in said and "PNG warning" not in said
+    stderr = subprocess.run(command, capture_output=True, text=True).stderr
+    assert "x.png: it is cut short" in stderr and "PNG warning" not in stderr
 
 
 def test_reading_photos_in_threads_leaves_the_filters_of_warnings_as_they_were(tmp_path):

@@ -76,7 +76,7 @@ def test_half_floats_are_rejected_for_other_formats_than_exr(tmp_path):
 
 
 def spoiled(path):
-    """Write a PFM file with values that are no radiance."""
+    """Write a PFM file with values that are not radiance."""
     values = np.array([[np.nan, np.inf, -np.inf, -1, 0, 7]], "<f4")
     path.write_bytes(b"Pf\n6 1\n-1.0\n" + values.tobytes())
     return path
@@ -139,11 +139,14 @@ def test_describe_file_states_format_size_and_values(tmp_path, suffix, says):
         write_picture(path, E.astype(np.uint8))
     else:
         write_radiance(path, E)
-    said = describe_file(path)
-    assert said["file"] == str(path) and (said["width"], said["height"]) == (9, 7)
-    assert {key: said[key] for key in says} == says
+    description = describe_file(path)
+    assert description["file"] == str(path) and (description["width"], description["height"]) == (
+        9,
+        7,
+    )
+    assert {key: description[key] for key in says} == says
 
 
 def test_describe_file_states_the_exposure_of_a_photo(shared):
-    said = describe_file(shared("frobisher") / "IMG_2600.jpg")
-    assert (said["seconds"], said["f_number"], said["iso"]) == (0.125, 8, 100)
+    description = describe_file(shared("frobisher") / "IMG_2600.jpg")
+    assert (description["seconds"], description["f_number"], description["iso"]) == (0.125, 8, 100)

@@ -13,7 +13,8 @@ from hdrlab.io.photos import read_bracket, read_photo, write_picture
 
 rawpy = pytest.importorskip("rawpy", reason="RAW photographs need the extra `raw`")
 
-BLACK, SATURATED = 64, 4095
+BLACK = 64
+SATURATED = 4095
 BALANCE = np.array([2.0, 1.0, 1.5])  # what the camera multiplies its red, green and blue by
 SRGB = [
     3.2404542,
@@ -85,7 +86,8 @@ def test_raw_values_are_linear_above_black_and_white_balanced(tmp_path):
 
 
 def test_values_of_raw_photos_are_proportional_to_the_light(tmp_path):
-    dark, bright = (read_photo(dng(tmp_path / f"{v}.dng", flat(v))) for v in (50, 3200))
+    dark = read_photo(dng(tmp_path / "dark.dng", flat(50)))
+    bright = read_photo(dng(tmp_path / "bright.dng", flat(3200)))
     assert middle(bright) / middle(dark) == pytest.approx(64, rel=0.02)
 
 
@@ -218,7 +220,8 @@ def test_dng_with_jpeg_xl_is_rejected_with_advice(order, tmp_path):
         )  # another reader's
     else:  # no writer at hand: the number of the compression alone
         path = linear_dng(tmp_path / "pro.dng", flat(400), byteorder=">")
-        none, packed = (struct.pack(">HHLH", 259, 3, 1, number) for number in (1, 52546))
+        none = struct.pack(">HHLH", 259, 3, 1, 1)
+        packed = struct.pack(">HHLH", 259, 3, 1, 52546)
         assert path.read_bytes().count(none) == 1
         path.write_bytes(path.read_bytes().replace(none, packed))
     for read in (read_header, read_photo):

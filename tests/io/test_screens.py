@@ -26,7 +26,7 @@ def scene(name="chapel", shape=(96, 144)):
 
 
 def tonemap(tmp_path, E, name, *options):
-    """Return the file that the command writes of a map, as Path."""
+    """Run the command on a map and return the path of its output."""
     radiance.write_radiance(tmp_path / "map.exr", E)
     out = tmp_path / name
     if out.suffix == ".avif":
@@ -103,9 +103,9 @@ def test_jpeg_xl_is_lossless(place, tmp_path):
 
 
 def test_jpeg_xl_states_that_its_floats_are_linear(tmp_path):
-    """Its header in bits: floats of 32 bits, not by XYB, by number RGB, D65, sRGB, linear."""
+    """The header in bits: 32-bit floats, no XYB, RGB by its number, D65, sRGB, linear."""
     data = tonemap(tmp_path, scene(shape=(96, 96)), "room.jxl").read_bytes()
-    bits = "".join(f"{one:08b}"[::-1] for one in data[data.index(b"\xff\x0a") + 2 :][:16])
+    bits = "".join(f"{byte:08b}"[::-1] for byte in data[data.index(b"\xff\x0a") + 2 :][:16])
     assert bits[:9] == "1" + "11010" + "100"  # 12 times 8 rows, as many columns
     metadata = (
         "00" + "1" + "00" + "1110" + "0" + "00" + "0"
@@ -131,9 +131,11 @@ def test_srgb_red_is_converted_to_bt_2020_primaries():
 def test_light_has_the_brightness_of_the_picture_and_is_limited_by_the_headroom():
     E = scene()
     picture = pipeline.develop(E, "reinhard")
-    hdr, L = screens.light(picture, E, headroom=4), colour.luminance
+    hdr = screens.light(picture, E, headroom=4)
+    L = colour.luminance
     assert hdr.max() == np.float32(4)
-    Ld, whole = L(colour.decode_srgb(picture / np.float32(255))), L(screens.light(picture, E))
+    Ld = L(colour.decode_srgb(picture / np.float32(255)))
+    whole = L(screens.light(picture, E))
     lit = (Ld > 0) & (whole > 0)
     assert np.log(whole[lit]).mean() == pytest.approx(np.log(Ld[lit]).mean(), abs=1e-4)
 
@@ -155,9 +157,9 @@ def test_tonemap_rejects_a_suffix_that_does_not_fit_the_kind(to, name, tmp_path,
     radiance.write_radiance(tmp_path / "map.exr", scene(shape=(12, 16)))
     with pytest.raises(SystemExit) as ended:
         run(["tonemap", str(tmp_path / "map.exr"), "-o", str(tmp_path / name), "--to", to])
-    said = capsys.readouterr().err
-    assert ended.value.code == 2 and said.count("\n") == 1 and f".{to}" in said
-    assert [one.name for one in tmp_path.iterdir()] == ["map.exr"]
+    message = capsys.readouterr().err
+    assert ended.value.code == 2 and message.count("\n") == 1 and f".{to}" in message
+    assert [file.name for file in tmp_path.iterdir()] == ["map.exr"]
 
 
 def test_tonemap_writes_8_bit_png_by_default(tmp_path):
@@ -181,9 +183,9 @@ def test_pq_encoding_is_noted_by_info_and_in_a_bracket(name, tmp_path, capsys):
     path = tonemap(tmp_path, scene(), name, "--to", name[-4:].strip("."))
     for k in (1, 2):
         (folder / f"{k}{path.suffix}").write_bytes(path.read_bytes())
-    said = []
-    read_bracket(sorted(folder.iterdir()), [1, 2], note=said.append)
-    (warning,) = said
+    notes = []
+    read_bracket(sorted(folder.iterdir()), [1, 2], note=notes.append)
+    (warning,) = notes
     assert "HDR screen" in warning
     assert "PQ or HLG" in describe_file(path)["processing"]
 
@@ -197,7 +199,7 @@ def test_info_names_a_gain_map(tmp_path):
 
 
 def test_gain_map_without_metadata_is_rejected_with_advice(tmp_path):
-    """Apple's: a second JPEG whose XMP names it, and no numbers."""
+    """As Apple writes it: a second JPEG that the XMP names, without numbers."""
     parts = []
     for segments in (b"", b"http://ns.apple.com/HDRGainMap/1.0/"):
         file = io.BytesIO()

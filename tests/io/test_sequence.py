@@ -40,7 +40,7 @@ def shown(animation):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder of frames whose exposures take turns, 4 s and 1 s, of a linear camera."""
+    """A folder of frames of a linear camera that alternates between 4 s and 1 s."""
     place = tmp_path / "frames"
     place.mkdir()
     for j, frame in enumerate(moving()):
@@ -155,8 +155,8 @@ def test_write_maps_writes_all_maps_or_none(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["maps"]
 
 
-def told(capsys, *arguments):
-    """Return the exit code of the command, what it printed, and its complaints."""
+def run_command(capsys, *arguments):
+    """Return the exit code of the command, its output and its error messages."""
     with pytest.raises(SystemExit) as end:
         run([str(argument) for argument in arguments])
     return end.value.code or 0, *capsys.readouterr()
@@ -164,20 +164,21 @@ def told(capsys, *arguments):
 
 def test_video_makes_a_film_from_a_folder(folder, tmp_path, capsys):
     out = tmp_path / "out.gif"
-    code, said, _ = told(
+    code, output, _ = run_command(
         capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear", "--rate", 10
     )
-    assert code == 0 and said == f"{out}: 6 frames, 64 x 48\n"
+    assert code == 0 and output == f"{out}: 6 frames, 64 x 48\n"
     assert len(shown(out)) == 6
 
 
 def test_video_makes_a_folder_of_radiance_maps(folder, tmp_path, capsys):
     out = tmp_path / "maps"
-    code, said, _ = told(
+    code, output, _ = run_command(
         capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear"
     )
-    assert code == 0 and "6 frames" in said
-    first, second = (radiance.read_radiance(out / f"000{j}.exr") for j in (1, 2))
+    assert code == 0 and "6 frames" in output
+    first = radiance.read_radiance(out / "0001.exr")
+    second = radiance.read_radiance(out / "0002.exr")
     light = [(frame / 255.0) ** 2 for frame in moving()[:2, :, :, 1]]
     for E, truth in ((first[..., 1], light[0]), (second[..., 1], light[1])):
         ratio = E[8:-8, 8:-8] / truth[8:-8, 8:-8]
@@ -207,7 +208,7 @@ def test_video_reports_bad_input_in_one_line(
     arguments, says, folder, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    code, _, complaint = told(capsys, "video", "frames", *arguments)
+    code, _, complaint = run_command(capsys, "video", "frames", *arguments)
     assert code == 2 and says in complaint and complaint.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["frames"]
 
@@ -215,14 +216,17 @@ def test_video_reports_bad_input_in_one_line(
 def test_video_does_not_write_maps_into_a_folder_that_is_not_empty(folder, tmp_path, capsys):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.txt").write_text("mine")
-    code, _, complaint = told(capsys, "video", folder, "-o", tmp_path / "full", "--times", "1,4")
+    code, _, complaint = run_command(
+        capsys, "video", folder, "-o", tmp_path / "full", "--times", "1,4"
+    )
     assert code == 2 and "new or empty" in complaint and complaint.count("\n") == 1
     assert [path.name for path in (tmp_path / "full").iterdir()] == ["mine.txt"]
 
 
 def test_video_shows_progress_and_keeps_the_old_file_on_ctrl_c(tmp_path):
     pty = pytest.importorskip("pty", reason="there are no such terminals here")
-    place, out = tmp_path / "frames", tmp_path / "out.gif"
+    place = tmp_path / "frames"
+    out = tmp_path / "out.gif"
     place.mkdir()
     for j, frame in enumerate(moving(60, (120, 160))):
         write_picture(place / f"{j:02d}.png", frame)
@@ -249,11 +253,12 @@ def test_video_shows_progress_and_keeps_the_old_file_on_ctrl_c(tmp_path):
     )
     os.close(its_end)
     try:
-        said, deadline = "", time.monotonic() + PATIENCE
-        while "merging" not in said and time.monotonic() < deadline:
+        output = ""
+        deadline = time.monotonic() + PATIENCE
+        while "merging" not in output and time.monotonic() < deadline:
             if select.select([terminal], [], [], 1)[0]:
-                said += os.read(terminal, 4096).decode()
-        assert "merging" in said
+                output += os.read(terminal, 4096).decode()
+        assert "merging" in output
         process.send_signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 130
     finally:

@@ -1,4 +1,4 @@
-"""`hdrlab.io.splitting`: a folder is divided into the brackets that were taken."""
+"""`hdrlab.io.splitting`: a folder is split into the brackets that were taken."""
 
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -14,7 +14,7 @@ SERIES = [1 / 100, 1 / 400, 1 / 25]
 
 
 def headers(times, seconds=None):
-    """Return the headers of photos with exposure times, taken so many seconds after the first."""
+    """Return headers of photos with these exposure times, taken so many seconds after the first."""
     result = []
     for j, time in enumerate(times):
         taken = None if seconds is None else START + timedelta(seconds=seconds[j])

@@ -31,13 +31,14 @@ pillow_heif.register_heif_opener()
 
 def tags(seconds=0.25, orientation=1):
     exif = Image.Exif()
-    exif[0x010F], exif[0x0112] = "Maker", orientation
+    exif[0x010F] = "Maker"
+    exif[0x0112] = orientation
     exif.get_ifd(0x8769).update({33434: seconds, 33437: 2.0, 34855: 80})
     return exif
 
 
 def save(path, image=RGB, **options):
-    """Write with Pillow, in the format that the suffix or `format` says, with EXIF."""
+    """Write an image with Pillow, with EXIF, in the format of the suffix or of `format`."""
     kind = options.pop("format", None) or MADE.get(path.suffix[1:].lower())
     if kind == "AVIF":
         require_avif()
@@ -63,11 +64,13 @@ def profile(primaries, gamma=None):
     }
     bodies |= {b"cprt": b"text" + bytes(4) + b"none\0"}
     bodies |= {
-        bytes([c]) + b"XYZ": b"XYZ " + bytes(4) + fixed(*one)
-        for c, one in zip(b"rgb", colorants, strict=True)
+        bytes([c]) + b"XYZ": b"XYZ " + bytes(4) + fixed(*colorant)
+        for c, colorant in zip(b"rgb", colorants, strict=True)
     }
     bodies |= {bytes([c]) + b"TRC": para for c in b"rgb"}
-    table, data, at = b"", b"", 132 + 12 * len(bodies)
+    table = b""
+    data = b""
+    at = 132 + 12 * len(bodies)
     for name, body in bodies.items():
         body += bytes(-len(body) % 4)
         table += name + struct.pack(">2I", at + len(data), len(body))
@@ -104,7 +107,10 @@ def test_exif_orientation_is_applied_to_webp_and_avif(tmp_path, suffix, orientat
 
 
 def test_heic_is_rotated_only_once(tmp_path):
-    """HEIF turns by a property of its own; EXIF beside it, which iPhones write, does not count again."""
+    """HEIF has its own rotation property.
+
+    iPhones write the rotation in EXIF as well; it must not count twice.
+    """
     for quarter_turns, orientation in (1, 8), (3, 6):
         heif = pillow_heif.from_pillow(
             Image.fromarray(np.ascontiguousarray(np.rot90(RGB, quarter_turns)))
@@ -146,7 +152,7 @@ def test_heic_keeps_ten_bits_and_white_is_the_maximum(tmp_path):
 
 
 def film(data):
-    """Return a photograph with a film behind it, in whose pixels markers of JPEG occur."""
+    """Return a photo followed by a video whose data contains JPEG markers."""
     return data + b"\0\0\0\x18ftypmp42" + RNG.bytes(2000) + b"\xff\xda" + RNG.bytes(900)
 
 
@@ -239,8 +245,9 @@ def test_damaged_profile_is_an_error_that_names_the_photo(tmp_path):
 
 @pytest.mark.parametrize(("dtype", "share"), [(np.uint8, 80), (np.uint16, 100)])
 def test_brackets_in_display_p3_and_srgb_give_the_same_radiance_map(tmp_path, dtype, share):
-    """Within 1 %: all of a map of 16 bits; four fifths of one of 8, whose two roundings are the rest."""
-    E, white = (decode_srgb(RGB / 255) + 0.02) ** 2, np.iinfo(dtype).max
+    """Within 1 %: all pixels of a 16-bit map, and four fifths of an 8-bit one, which is rounded twice."""
+    E = (decode_srgb(RGB / 255) + 0.02) ** 2
+    white = np.iinfo(dtype).max
     to_p3 = np.linalg.inv(gamut.conversion_matrix(P3))
     g = np.log(decode_srgb(np.maximum(np.arange(white + 1), 0.5) / white))
     times = [0.5, 1, 2, 4, 8, 16, 32]
@@ -252,10 +259,13 @@ def test_brackets_in_display_p3_and_srgb_give_the_same_radiance_map(tmp_path, dt
             tifffile.imwrite(
                 tmp_path / space / f"{j}.tif", levels, photometric="rgb", iccprofile=icc
             )
-    taken = [read_bracket(tmp_path / space, times) for space in ("srgb", "p3")]
-    one, other = (merge(bracket.images, bracket.times, g) for bracket in taken)
-    assert abs(np.median(other / one) - 1) < 1e-3
-    assert np.percentile(np.abs(other / one - 1), share) < 0.01
+    maps = {}
+    for space in ("srgb", "p3"):
+        bracket = read_bracket(tmp_path / space, times)
+        maps[space] = merge(bracket.images, bracket.times, g)
+    ratio = maps["p3"] / maps["srgb"]
+    assert abs(np.median(ratio) - 1) < 1e-3
+    assert np.percentile(np.abs(ratio - 1), share) < 0.01
 
 
 @pytest.mark.parametrize("suffix", ["webp", "avif", "heic", "jpg"])

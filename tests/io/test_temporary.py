@@ -1,4 +1,6 @@
-"""Temporary files and folders are removed when their process has ended, in any way, and never before."""
+"""Temporary files and folders are removed when their process has ended, however it ended, and not
+earlier.
+"""
 
 import signal
 import subprocess
@@ -33,7 +35,7 @@ pytest.importorskip("fcntl", reason="this system keeps leftovers, because it has
 
 @contextmanager
 def writer(folder):
-    """Start a process that is in the middle of a file and a folder."""
+    """Start a process and stop it while it writes a file and a folder."""
     command = [sys.executable, "-c", WRITER, str(folder)]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
         try:

@@ -53,13 +53,14 @@ run(sys.argv[1:])
 def jpeg(seconds):
     """Return a photograph of TRUTH as a file, with bytes behind its end up to SIZE."""
     Z = np.rint(255 * encode_srgb(np.clip(TRUTH * seconds, 0, 1))).astype(np.uint8)
-    Image.fromarray(np.dstack([Z] * 3)).save(file := io.BytesIO(), "JPEG", quality=95)
+    file = io.BytesIO()
+    Image.fromarray(np.dstack([Z] * 3)).save(file, "JPEG", quality=95)
     return file.getvalue().ljust(SIZE, b"\0")
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The folder in which the virtual camera finds what it photographs."""
+    """The folder of photos that the virtual camera delivers."""
     made = tmp_path / "camera"
     made.mkdir()
     (made / "scene.jpg").write_bytes(jpeg(0.01))
@@ -71,8 +72,11 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def lens(folder, monkeypatch):
-    """Let the camera see the scene at the time that it is told; return the times of its photographs."""
-    seen, take = [], tethered.Camera.photograph
+    """Let the virtual camera photograph the scene with its current exposure time; return the times
+    used.
+    """
+    seen = []
+    take = tethered.Camera.photograph
 
     def photograph(self, time, path):
         seen.append(exposure.seconds(time))
@@ -92,21 +96,23 @@ def shoot(*arguments):
 
 
 def names(path):
-    return sorted(one.name for one in path.iterdir())
+    return sorted(file.name for file in path.iterdir())
 
 
 def test_shoot_takes_a_bracket_around_the_metered_time_and_assembles_it(lens, tmp_path, capsys):
-    room, E = tmp_path / "room", tmp_path / "room.hdr"
+    room = tmp_path / "room"
+    E = tmp_path / "room.hdr"
     assert shoot("-o", room, "--frames", 5, "--stops", 2.5, "--assemble", E) == 0
     assert lens == [0.0001, 0.0025, 0.01, 0.05, 1.0]
     assert names(room) == [*(f"{j:02d}.jpg" for j in range(1, 6)), "exposures.csv"]
-    found = radiance.read_radiance(E)[..., 1]
+    radiance_found = radiance.read_radiance(E)[..., 1]
     held = (TRUTH * min(lens) < 0.9) & (TRUTH * max(lens) > 0.02)
-    off = np.log2(found / TRUTH)[held]
+    off = np.log2(radiance_found / TRUTH)[held]
     assert held.mean() > 0.5 and np.percentile(abs(off - np.median(off)), 95) < 0.2
-    said = capsys.readouterr()
+    output = capsys.readouterr()
     assert (
-        "room.hdr (96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
+        "room.hdr (96 x 64" in output.out
+        and "autofocus is Off until the end, it was On" in output.err
     )
 
 
@@ -121,23 +127,24 @@ def test_list_of_times_has_the_exact_shutter_times(lens, tmp_path):
 def test_camera_settings_are_restored_at_the_end(folder, tmp_path):
     def settings(camera):
         return [
-            camera._find_setting(one).get_value()
-            for one in ("autofocus", "shutterspeed", "f-number")
+            camera._find_setting(name).get_value()
+            for name in ("autofocus", "shutterspeed", "f-number")
         ]
 
-    restore, found = tethered.Camera.restore, []
+    restore = tethered.Camera.restore
+    states = []
 
     def noted(camera):
-        found.append(settings(camera))
+        states.append(settings(camera))
         restore(camera)
-        found.append(settings(camera))
+        states.append(settings(camera))
 
     with mock.patch.object(tethered.Camera, "restore", noted), tethered.connected() as camera:
         before = settings(camera)
         assert camera.fix("light") == ["autofocus is Off until the end, it was On"]
         assert camera.fix("light") == []
         camera.photograph("0.1000s", tmp_path / "a")
-    assert found == [["Off", "0.1000s", "f/2.8"], before]
+    assert states == [["Off", "0.1000s", "f/2.8"], before]
 
 
 def test_note_names_settings_that_must_be_fixed_on_the_camera(folder):
@@ -150,9 +157,10 @@ def test_note_names_settings_that_must_be_fixed_on_the_camera(folder):
 
 
 class Automatic:
-    """A camera in mode A with automatic ISO, whose meter says 1/60 then and 1/4 at ISO 100.
+    """A camera in mode A with automatic ISO.
 
-    It makes two files of a photograph, and never falls silent.
+    Its meter reads 1/60 then, and 1/4 at ISO 100. It writes two files per photo, and its events
+    never stop.
     """
 
     SETTINGS = {
@@ -163,7 +171,9 @@ class Automatic:
 
     def __init__(self):
         self.now = {name: choices[0] for name, choices in self.SETTINGS.items()}
-        self.taken, self.exit, self.init = [], mock.Mock(), mock.Mock()
+        self.taken = []
+        self.exit = mock.Mock()
+        self.init = mock.Mock()
 
     def get_single_config(self, name):
         if name not in self.now:
@@ -171,8 +181,10 @@ class Automatic:
         metered = (
             name == "shutterspeed" and self.now["expprogram"] == "A" and self.now["iso"] == "100"
         )
-        setting, choices = mock.Mock(), self.SETTINGS[name]
-        setting.get_name.return_value, setting.count_choices.return_value = name, len(choices)
+        setting = mock.Mock()
+        choices = self.SETTINGS[name]
+        setting.get_name.return_value = name
+        setting.count_choices.return_value = len(choices)
         setting.get_choice = choices.__getitem__
         setting.get_value.return_value = "1/4" if metered else self.now[name]
         setting.set_value = lambda value: setattr(setting.get_value, "return_value", value)
@@ -194,9 +206,9 @@ class Automatic:
 
 
 def place(name):
-    found = mock.Mock(folder="/")
-    found.name = name
-    return found
+    file = mock.Mock(folder="/")
+    file.name = name
+    return file
 
 
 def test_meter_is_read_at_the_iso_of_the_photos_and_settings_are_restored(
@@ -205,12 +217,13 @@ def test_meter_is_read_at_the_iso_of_the_photos_and_settings_are_restored(
     camera = Automatic()
     monkeypatch.setattr(gphoto2, "Camera", lambda: camera)
     assert shoot("-o", tmp_path / "room", "--frames", 3) == 0
-    assert [one["shutterspeed"] for one in camera.taken] == ["1/15", "1/4", "1"]
-    assert {(one["expprogram"], one["iso"]) for one in camera.taken} == {("M", "100")}
+    assert [photo["shutterspeed"] for photo in camera.taken] == ["1/15", "1/4", "1"]
+    assert {(photo["expprogram"], photo["iso"]) for photo in camera.taken} == {("M", "100")}
     assert (camera.now["expprogram"], camera.now["iso"]) == ("A", "Auto")
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     assert (
-        "iso is 100 until the end, it was Auto" in said and "expprogram is M until the end" in said
+        "iso is 100 until the end, it was Auto" in message
+        and "expprogram is M until the end" in message
     )
 
 
@@ -218,7 +231,7 @@ def test_all_files_of_a_photo_are_saved_although_events_never_stop(tmp_path, mon
     monkeypatch.setattr(gphoto2, "Camera", Automatic)
     with tethered.connected() as camera:
         files = camera.photograph("1/4", tmp_path / "01")
-    assert [(one.name, one.read_text()) for one in files] == [
+    assert [(file.name, file.read_text()) for file in files] == [
         ("01.jpg", "IMG_1.JPG"),
         ("01.nef", "IMG_1.NEF"),
     ]
@@ -237,8 +250,9 @@ def test_disconnected_cable_keeps_the_photos_taken_so_far(folder, tmp_path):
     assert names(tmp_path / "room") == ["01.jpg", "02.jpg", "exposures.csv"]
     assert (tmp_path / "room/exposures.csv").read_text().count("\n") == 3
     assert not (tmp_path / "room.hdr").exists()
-    (last,) = [line for line in run.stderr.splitlines() if line.startswith("hdrlab: ")]
-    assert "no camera found; it may be asleep, its card full, or the cable out" in last
+    errors = [line for line in run.stderr.splitlines() if line.startswith("hdrlab: ")]
+    assert len(errors) == 1
+    assert "no camera found; it may be asleep, its card full, or the cable out" in errors[0]
 
 
 @pytest.mark.parametrize(
@@ -307,8 +321,8 @@ def test_interrupted_shoot_keeps_complete_photos_and_their_times(folder, tmp_pat
         time.sleep(0.02)
     process.send_signal(sent)
     assert process.wait(timeout=120) == code
-    taken = [one for one in names(room) if one.endswith(".jpg") and not one.startswith(".")]
-    assert 2 <= len(taken) < 6 and all((room / one).stat().st_size == SIZE for one in taken)
+    taken = [name for name in names(room) if name.endswith(".jpg") and not name.startswith(".")]
+    assert 2 <= len(taken) < 6 and all((room / name).stat().st_size == SIZE for name in taken)
     listed = (room / "exposures.csv").read_text().splitlines()[1:]
     assert [row.split(",")[0] for row in listed] == taken[: len(listed)] and len(listed) >= len(
         taken

@@ -23,7 +23,7 @@ DEEP = RGB.astype(np.uint16) * 257 + 3
 
 
 def read_by_pillow(path):
-    """Return the pixels that Pillow shows of the largest page."""
+    """Return the pixels of the largest page, read by Pillow."""
     with Image.open(path) as image:
         return np.asarray(image)
 

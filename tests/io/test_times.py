@@ -12,7 +12,12 @@ from hdrlab.io.exif_exposure import Exposure, equivalent_seconds, read_exposure
 from hdrlab.io.times import are_inverse, bracket_times, read_times
 
 NAMES = ["a.jpg", "b.jpg"]
-TIME, NUMBER, SPEED, TV, AV, BIAS = 33434, 33437, 34855, 37377, 37378, 37380
+TIME = 33434
+NUMBER = 33437
+SPEED = 34855
+TV = 37377
+AV = 37378
+BIAS = 37380
 
 
 def exif(**tags):
@@ -28,20 +33,20 @@ def wrote(tmp_path, text, name="times.txt"):
 
 
 def test_rational_exif_values_are_read():
-    said = read_exposure(exif(TIME=IFDRational(1, 60), NUMBER=IFDRational(28, 10), SPEED=200))
-    assert said == Exposure(pytest.approx(1 / 60), pytest.approx(2.8), 200)
+    exposure = read_exposure(exif(TIME=IFDRational(1, 60), NUMBER=IFDRational(28, 10), SPEED=200))
+    assert exposure == Exposure(pytest.approx(1 / 60), pytest.approx(2.8), 200)
 
 
 def test_apex_values_are_used_if_plain_ones_are_missing():
-    said = read_exposure(exif(TV=IFDRational(6, 1), AV=IFDRational(3, 1)))
-    assert said == Exposure(1 / 64, pytest.approx(2**1.5), None)
+    exposure = read_exposure(exif(TV=IFDRational(6, 1), AV=IFDRational(3, 1)))
+    assert exposure == Exposure(1 / 64, pytest.approx(2**1.5), None)
     assert read_exposure(exif(TIME=IFDRational(0, 1), TV=IFDRational(-2, 1))).seconds == 4
     assert read_exposure(exif(TV=IFDRational(0, 1))).seconds == 1
 
 
 def test_plain_values_take_precedence_over_apex_values():
-    said = read_exposure(exif(TIME=IFDRational(1, 50), TV=IFDRational(6, 1)))
-    assert said.seconds == pytest.approx(1 / 50)
+    exposure = read_exposure(exif(TIME=IFDRational(1, 50), TV=IFDRational(6, 1)))
+    assert exposure.seconds == pytest.approx(1 / 50)
 
 
 def test_exposure_bias_is_not_used_as_a_time():
@@ -59,8 +64,8 @@ def test_iso_speed_beyond_16_bits_is_read_from_the_newer_tag():
     "nothing", [IFDRational(0, 1), IFDRational(1, 0), IFDRational(0, 0), "", (), b"x"]
 )
 def test_exif_values_of_zero_and_infinity_are_ignored(nothing):
-    said = read_exposure(exif(TIME=nothing, NUMBER=nothing, SPEED=nothing))
-    assert said == Exposure(None, None, None)
+    exposure = read_exposure(exif(TIME=nothing, NUMBER=nothing, SPEED=nothing))
+    assert exposure == Exposure(None, None, None)
 
 
 @given(st.lists(st.tuples(*[st.floats(1e-4, 1e4)] * 3), min_size=2, max_size=5))
@@ -145,7 +150,8 @@ def test_names_in_a_list_may_lack_suffix_folder_and_case(tmp_path):
 
 
 def test_exif_decides_between_seconds_and_1_over_seconds(tmp_path):
-    path, stated = wrote(tmp_path, "a.jpg 60\nb.jpg 15"), [Exposure(1 / 50), Exposure(1 / 13)]
+    path = wrote(tmp_path, "a.jpg 60\nb.jpg 15")
+    stated = [Exposure(1 / 50), Exposure(1 / 13)]
     assert bracket_times(NAMES, stated, path) == (
         [pytest.approx(1 / 60), pytest.approx(1 / 15)],
         None,

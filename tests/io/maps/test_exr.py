@@ -174,13 +174,15 @@ def test_real_exr_files_equal_those_of_the_official_module(shared, name):
 def test_real_exr_with_nan_and_infinity_is_rejected_unless_cleaned(shared):
     path = shared("openexr") / "BrightRingsNanInf.exr"
     E = exr.read(path)
-    nan, inf = np.count_nonzero(np.isnan(E)), np.count_nonzero(np.isinf(E))
+    nan = np.count_nonzero(np.isnan(E))
+    inf = np.count_nonzero(np.isinf(E))
     assert nan + inf > 0
     with pytest.raises(
         ValueError, match=rf"BrightRingsNanInf.exr: .*got {nan} NaN, {inf} infinite.*clean=True"
     ):
         read_radiance(path)
-    mended, good = read_radiance(path, clean=True), np.isfinite(E)
+    mended = read_radiance(path, clean=True)
+    good = np.isfinite(E)
     assert np.array_equal(mended[good], np.maximum(E[good], 0)) and np.all(np.isfinite(mended))
 
 

@@ -9,17 +9,19 @@ from hdrlab.io.maps import exr
 from hdrlab.io.maps.layers import read_layers, write_layers
 
 RNG = np.random.default_rng(1)
-RGB, GRAY, RGBA = (RNG.random((5, 7, *rest)).astype(np.float32) for rest in ((3,), (), (4,)))
+RGB = RNG.random((5, 7, 3)).astype(np.float32)
+GRAY = RNG.random((5, 7)).astype(np.float32)
+RGBA = RNG.random((5, 7, 4)).astype(np.float32)
 
 
 def test_layers_survive_a_round_trip_bit_for_bit_with_infinity(tmp_path):
     s = GRAY.copy()
     s[2, 3] = np.inf
-    given = {"radiance": RGB, "standard deviation": s, "cover": RGBA}
-    write_layers(tmp_path / "a.exr", given, comments=["one", "two"])
-    found = read_layers(tmp_path / "a.exr")
-    assert list(found) == list(given) and all(
-        np.array_equal(found[name], given[name]) for name in given
+    layers = {"radiance": RGB, "standard deviation": s, "cover": RGBA}
+    write_layers(tmp_path / "a.exr", layers, comments=["one", "two"])
+    read_back = read_layers(tmp_path / "a.exr")
+    assert list(read_back) == list(layers) and all(
+        np.array_equal(read_back[name], layers[name]) for name in layers
     )
     assert exr.read_header(tmp_path / "a.exr").attributes["comments"] == "one\ntwo"
 
@@ -39,4 +41,4 @@ def test_write_layers_rejects_bad_layers_and_keeps_the_old_file(layers, tmp_path
     before = path.read_bytes()
     with pytest.raises(InputError):
         write_layers(path, layers)
-    assert path.read_bytes() == before and [one.name for one in tmp_path.iterdir()] == ["a.exr"]
+    assert path.read_bytes() == before and [file.name for file in tmp_path.iterdir()] == ["a.exr"]

@@ -21,13 +21,13 @@ COMPRESSIONS = {
 
 @pytest.fixture
 def without_openexr(monkeypatch):
-    """Call it, and hdrlab has no module OpenEXR from then on."""
+    """Return a function that hides the module OpenEXR from hdrlab."""
     return lambda: monkeypatch.setattr(exr, "OpenEXR", None)
 
 
 @pytest.fixture
 def without_rgbe(monkeypatch):
-    """Call it, and imagecodecs has no codec for RGBE from then on."""
+    """Return a function that hides imagecodecs' RGBE codec from hdrlab."""
     return lambda: monkeypatch.setattr(rgbe, "imagecodecs", NO_CODECS)
 
 
@@ -43,10 +43,10 @@ def light(shape=(37, 21, 3)):
 def test_a_scene_is_read_to_the_bit(path, without_openexr):
     expected = layers.read_layers(path)
     without_openexr()
-    found = layers.read_layers(path)
-    assert found.keys() == expected.keys()
+    decoded = layers.read_layers(path)
+    assert decoded.keys() == expected.keys()
     for name, layer in expected.items():
-        assert np.array_equal(found[name], layer, equal_nan=True)
+        assert np.array_equal(decoded[name], layer, equal_nan=True)
 
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
@@ -72,9 +72,9 @@ def test_the_official_reader_reads_written_files(half, shape, tmp_path, monkeypa
         patch.setattr(exr, "OpenEXR", None)
         exr.write(path, E, half=half, comments=["by hand"], white_luminance=12.5)
         assert radiance.read_luminance_of_unit(path) == 12.5
-        found = exr.read(path)
-    assert np.array_equal(exr.read(path), found)
-    assert np.array_equal(found, E.astype(np.float16 if half else np.float32))
+        decoded = exr.read(path)
+    assert np.array_equal(exr.read(path), decoded)
+    assert np.array_equal(decoded, E.astype(np.float16 if half else np.float32))
     header = exr.read_header(path)
     assert header.attributes["comments"] == "by hand"
     assert header.attributes["whiteLuminance"] == 12.5
@@ -128,9 +128,9 @@ def test_run_lengths_of_rgbe_are_those_that_imagecodecs_reads(shape, tmp_path, m
     with monkeypatch.context() as patch:
         patch.setattr(rgbe, "imagecodecs", NO_CODECS)
         rgbe.write(path, E)
-        found = rgbe.read(path)
-    assert np.array_equal(rgbe.read(path), found)
-    assert np.allclose(found, E.reshape(found.shape[:2] + (-1,)), rtol=0, atol=E.max() / 128)
+        decoded = rgbe.read(path)
+    assert np.array_equal(rgbe.read(path), decoded)
+    assert np.allclose(decoded, E.reshape(decoded.shape[:2] + (-1,)), rtol=0, atol=E.max() / 128)
 
 
 def test_run_lengths_of_imagecodecs_are_read(tmp_path, without_rgbe):

@@ -28,7 +28,7 @@ def opencv(path):
 
 
 def file(path, pixels, *, header="", resolution=None, first="#?RADIANCE"):
-    """Write pixels (H, W, 4) flat, under any header."""
+    """Write pixels (H, W, 4) without run lengths, under any header."""
     height, width = pixels.shape[:2]
     resolution = resolution or f"-Y {height} +X {width}"
     path.write_bytes(
@@ -87,7 +87,8 @@ def test_file_size_is_within_one_percent_of_opencvs(tmp_path):
     E = np.repeat(scene(64, 128, seed=1), 5, axis=1)
     rgbe.write(tmp_path / "ours.hdr", E)
     cv2.imwrite(str(tmp_path / "theirs.hdr"), np.ascontiguousarray(E[..., ::-1]))
-    ours, theirs = ((tmp_path / n).stat().st_size for n in ("ours.hdr", "theirs.hdr"))
+    ours = (tmp_path / "ours.hdr").stat().st_size
+    theirs = (tmp_path / "theirs.hdr").stat().st_size
     assert ours < E.size / 3 * 4 / 2 and abs(ours - theirs) <= theirs / 100
 
 
@@ -172,7 +173,8 @@ def test_run_length_scanlines_may_be_columns(tmp_path):
 
 
 def test_oldest_run_lengths_repeat_the_previous_pixel(tmp_path):
-    a, b = [10, 200, 30, 130], [200, 20, 3, 120]
+    a = [10, 200, 30, 130]
+    b = [200, 20, 3, 120]
     coded = [a, [1, 1, 1, 3], b, [1, 1, 1, 2], [1, 1, 1, 1], a]  # 1 + 3, 1 + 2 + 256, 1 pixels
     expected = np.array([a] * 4 + [b] * 259 + [a], np.uint8).reshape(2, 132, 4)
     path = file(tmp_path / "x.hdr", np.array([coded]), resolution="-Y 2 +X 132")
@@ -317,7 +319,7 @@ CODINGS = {
 
 
 def mixed_file(path, order, width):
-    """Write scanlines that are coded in this order; return their pixels."""
+    """Write a file whose scanlines use these codings in this order, and return its pixels."""
     rng = np.random.default_rng(3)
     rows = []
     data = b""
@@ -339,7 +341,7 @@ def mixed_file(path, order, width):
 )
 @pytest.mark.parametrize("width", [8, 130, 513, 514])
 def test_each_scanline_may_be_coded_in_its_own_way(tmp_path, order, width):
-    """As Radiance reads them: the first bytes of each scanline say how it is coded."""
+    """As in Radiance, the first bytes of each scanline state its coding."""
     path = tmp_path / "x.hdr"
     pixels = mixed_file(path, order, width)
     assert np.array_equal(rgbe.read(path), rgbe.to_radiance(pixels))

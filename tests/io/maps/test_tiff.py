@@ -16,16 +16,17 @@ from hdrlab.show.describe import describe_file
 RNG = np.random.default_rng(0)
 RGB = np.exp(4 * RNG.standard_normal((13, 17, 3))).astype(np.float32)
 GRAY = RGB[..., 0].copy()
-each = pytest.mark.parametrize("E", [RGB, GRAY], ids=["RGB", "gray"])
+in_color_and_gray = pytest.mark.parametrize("E", [RGB, GRAY], ids=["RGB", "gray"])
 
 
-@each
+@in_color_and_gray
 def test_tiff_maps_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, E):
-    ours, theirs = tmp_path / "ours.tif", tmp_path / "theirs.tiff"
+    ours = tmp_path / "ours.tif"
+    theirs = tmp_path / "theirs.tiff"
     write_radiance(ours, E)
-    found = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
-    assert found.dtype == np.float32 and np.array_equal(
-        found if E.ndim == 2 else found[..., ::-1], E
+    read_by_opencv = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
+    assert read_by_opencv.dtype == np.float32 and np.array_equal(
+        read_by_opencv if E.ndim == 2 else read_by_opencv[..., ::-1], E
     )
     bgr = E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1])
     # uncompressed: by itself, OpenCV before 4.11 writes colours as LogLuv, which loses
@@ -34,7 +35,7 @@ def test_tiff_maps_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, E):
     assert read.dtype == np.float32 and np.array_equal(read, E)
 
 
-@each
+@in_color_and_gray
 @pytest.mark.parametrize("dtype", ["<f2", ">f4", "<f8"])
 @pytest.mark.parametrize(
     "form", [{}, {"compression": "zlib", "predictor": True}, {"tile": (16, 16)}], ids=str
@@ -64,7 +65,8 @@ def test_alpha_is_dropped_and_separate_planes_are_joined(tmp_path, planar):
 
 
 def test_integer_tiff_is_rejected_as_a_map_and_info_describes_both(tmp_path):
-    photo, radiance = tmp_path / "photo.tif", tmp_path / "map.tif"
+    photo = tmp_path / "photo.tif"
+    radiance = tmp_path / "map.tif"
     write_picture(photo, np.zeros((4, 5, 3), np.uint8))
     with pytest.raises(ValueError, match=r"photo.tif: .*floating-point samples.*3 x uint8"):
         read_radiance(photo)
