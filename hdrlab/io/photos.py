@@ -7,6 +7,7 @@ order. Then each frame is decoded once, straight into its place, several at a ti
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from hdrlab.core.arrays import Array, ArrayLike, as_picture
+from hdrlab.core.arrays import Array, ArrayLike, Mask, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.threads import map_in_threads
@@ -138,43 +139,142 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    if isinstance(paths, album.Selection):
-        selection = paths
-    else:
-        selection = album.select(paths)
-        if _are_in_order(times) and len(times) > len(selection.headers):
-            # the caller knows that all photos of the folder are one bracket
-            selection = album.select(paths, split=False)
-        times = _drop_times_of_damaged(times, paths, selection)
-    headers, more_notes = album.turn_alike(selection.headers)
+    selection, times = _select_photos(paths, times)
+    headers, notes_on_orientation = album.turn_alike(selection.headers)
     require_alike(headers)
     if detail is not None:
         for sentence in selection.details:
             detail(sentence)
-    for sentence in (*selection.notes, *more_notes, *_processing_notes(headers)):
+    for sentence in (*selection.notes, *notes_on_orientation, *_processing_notes(headers)):
         note(sentence)
+    frames = _sort_by_time(headers, times, note=note, detail=detail or note)
+    photos = _decode_photos(frames.headers, mask, progress)
+    errors = photos.errors or _find_damaged_rows(frames.headers, photos)
+    damaged = [*selection.damaged, *(errors[j] for j in sorted(errors))]
+    album.require_enough_sound(damaged, len(frames.headers) - len(errors))
+    warnings_of_damage = [f"{error}; it was left out" for error in damaged]
+    for sentence in warnings_of_damage:
+        warn(sentence)
+    if errors:
+        sound = [j for j in range(len(frames.headers)) if j not in errors]
+        frames = frames.select(sound)
+        photos = photos.select(sound)
+    is_raw = frames.headers[0].kind == "RAW"
+    if not is_raw:
+        white = white_level.find_white_level(photos.images, valid=photos.valid)
+        if white is not None:
+            white_level.scale_to_full_white(photos.images, white)
+            note(white_level.describe_white_level(white))
+    return bracket(
+        photos.images,
+        _choose_seconds(frames, photos.images),
+        [header.path.name for header in frames.headers],
+        valid=photos.valid,
+        linear=is_raw,
+        luminance_of_unit=frames.luminance_of_unit,
+        max_luminance_of_unit=frames.max_luminance_of_unit,
+        damaged=warnings_of_damage,
+    )
+
+
+@dataclass(frozen=True)
+class _SortedFrames:
+    """The headers and exposure times of a bracket, from short to long.
+
+    `inverse_seconds` are the times if the numbers of a list are 1/seconds, and None unless the list
+    leaves that open.
+    """
+
+    headers: list[PhotoHeader]
+    seconds: list[float]
+    inverse_seconds: list[float] | None
+    luminance_of_unit: float | None
+    max_luminance_of_unit: float | None
+
+    def select(self, indices: list[int]) -> "_SortedFrames":
+        """Return the frames with these indices."""
+        inverse_seconds = None
+        if self.inverse_seconds is not None:
+            inverse_seconds = [self.inverse_seconds[j] for j in indices]
+        return replace(
+            self,
+            headers=[self.headers[j] for j in indices],
+            seconds=[self.seconds[j] for j in indices],
+            inverse_seconds=inverse_seconds,
+        )
+
+
+@dataclass(frozen=True)
+class _DecodedPhotos:
+    """Pixels of a bracket (P, H, W[, 3]), where they are valid (P, H, W), and errors by frame."""
+
+    images: Array
+    valid: Mask | None
+    errors: dict[int, FileFormatError]
+
+    def select(self, indices: list[int]) -> "_DecodedPhotos":
+        """Return a copy of the photos with these indices, which have no errors."""
+        valid = None if self.valid is None else self.valid[indices]
+        return _DecodedPhotos(images=self.images[indices], valid=valid, errors={})
+
+
+def _select_photos(
+    paths: album.Paths | album.Selection, times: Times | None
+) -> tuple[album.Selection, Times | None]:
+    """Select the photos of a bracket, and leave out the times of damaged ones."""
+    if isinstance(paths, album.Selection):
+        return paths, times
+    selection = album.select(paths)
+    if _are_in_order(times) and len(times) > len(selection.headers):
+        # the caller knows that all photos of the folder are one bracket
+        selection = album.select(paths, split=False)
+    return selection, _drop_times_of_damaged(times, paths, selection)
+
+
+def _sort_by_time(
+    headers: list[PhotoHeader],
+    times: Times | None,
+    *,
+    note: Callable[[str], object],
+    detail: Callable[[str], object],
+) -> _SortedFrames:
+    """Find the exposure time of each photo, and sort the photos from short to long exposures."""
     names = [header.path.name for header in headers]
     exposures, fill_notes = fill_missing(names, [header.exposure for header in headers])
     times_source, times_notes = _find_source_of_times(names, exposures, times)
-    for sentence in (*(fill_notes if times is None else ()), *times_notes):
+    if times is None:
+        for sentence in fill_notes:
+            note(sentence)
+    for sentence in times_notes:
         note(sentence)
     if times is None and times_source is not None and not times_notes:
-        (detail or note)(_describe_missing_times(names, exposures))
-    seconds, inverse = bracket_times(names, exposures, times_source)
-    luminance = luminance_of_unit(exposures) if times_source is None else None
-    max_luminance = max_luminance_of_unit(exposures) if times_source is None else None
-    order = np.argsort(seconds, kind="stable")
-    headers = [headers[j] for j in order]
-    names = [header.path.name for header in headers]
-    is_raw = headers[0].kind == "RAW"
-    balance = raw.balance(headers[0].path) if is_raw else None
-    images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
+        detail(_describe_missing_times(names, exposures))
+    seconds, inverse_seconds = bracket_times(names, exposures, times_source)
+    order = np.argsort(seconds, kind="stable").tolist()
+    frames = _SortedFrames(
+        headers=headers,
+        seconds=seconds,
+        inverse_seconds=inverse_seconds,
+        luminance_of_unit=luminance_of_unit(exposures) if times_source is None else None,
+        max_luminance_of_unit=max_luminance_of_unit(exposures) if times_source is None else None,
+    )
+    return frames.select(order)
+
+
+def _decode_photos(
+    headers: list[PhotoHeader],
+    mask: tuple[int, int, int] | None,
+    progress: Callable[[Sequence[Path]], Iterable[Path]],
+) -> _DecodedPhotos:
+    """Decode photos of one shape, several at a time. A damaged file gives an error of its frame."""
+    first = headers[0]
+    balance = raw.balance(first.path) if first.kind == "RAW" else None
+    images = np.empty((len(headers), *first.shape), first.dtype)
     if mask is not None and images.ndim != 4:
         raise InputError(
             f"the mask color {mask} needs RGB photos, but these are gray; leave out the mask"
         )
     valid = None if mask is None else np.empty(images.shape[:3], bool)
-
     errors: dict[int, FileFormatError] = {}
 
     def decode_frame(j: int) -> None:
@@ -189,47 +289,36 @@ def read_bracket(
     with closing(map_in_threads(decode_frame, range(len(headers)))) as decoded:
         for _ in progress([header.path for header in headers]):
             next(decoded)
-    if not errors:
-        only_constant = all(header.kind in CHECKED_KINDS for header in headers)
-        for band in damaged_bands.find_damaged_bands(
-            images, valid=valid, only_constant=only_constant
-        ):
-            path = headers[band.frame].path
-            shows = "have one color" if band.is_constant else "show something else"
-            errors[band.frame] = FileFormatError(
-                f"{path}: its rows {band.start} to {band.stop - 1} {shows}, unlike those of "
-                "the other photos, so the file is damaged"
-            )
-    sound = [j for j in range(len(headers)) if j not in errors]
-    damaged = [*selection.damaged, *(errors[j] for j in sorted(errors))]
-    album.require_enough_sound(damaged, len(sound))
-    warnings_of_damage = [f"{error}; it was left out" for error in damaged]
-    for sentence in warnings_of_damage:
-        warn(sentence)
-    if errors:
-        images = images[sound]
-        valid = None if valid is None else valid[sound]
-        names = [names[j] for j in sound]
-        order = order[sound]
-    if not is_raw:
-        white = white_level.find_white_level(images, valid=valid)
-        if white is not None:
-            white_level.scale_to_full_white(images, white)
-            note(white_level.describe_white_level(white))
-    if inverse:
-        brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
-        if are_inverse([seconds[j] for j in order], brightness):
-            seconds = inverse
-    return bracket(
-        images,
-        [seconds[j] for j in order],
-        names,
-        valid=valid,
-        linear=is_raw,
-        luminance_of_unit=luminance,
-        max_luminance_of_unit=max_luminance,
-        damaged=warnings_of_damage,
+    return _DecodedPhotos(images=images, valid=valid, errors=errors)
+
+
+def _find_damaged_rows(
+    headers: list[PhotoHeader], photos: _DecodedPhotos
+) -> dict[int, FileFormatError]:
+    """Return an error for each photo with rows that differ from those of all other photos."""
+    only_constant = all(header.kind in CHECKED_KINDS for header in headers)
+    bands = damaged_bands.find_damaged_bands(
+        photos.images, valid=photos.valid, only_constant=only_constant
     )
+    errors = {}
+    for band in bands:
+        path = headers[band.frame].path
+        shows = "have one color" if band.is_constant else "show something else"
+        errors[band.frame] = FileFormatError(
+            f"{path}: its rows {band.start} to {band.stop - 1} {shows}, unlike those of "
+            "the other photos, so the file is damaged"
+        )
+    return errors
+
+
+def _choose_seconds(frames: _SortedFrames, images: Array) -> list[float]:
+    """Return the exposure times; numbers of a list may be seconds or 1/seconds, as the photos show."""
+    if frames.inverse_seconds is None:
+        return frames.seconds
+    brightness = [image[::BRIGHTNESS_STEP, ::BRIGHTNESS_STEP].mean() for image in images]
+    if are_inverse(frames.seconds, brightness):
+        return frames.inverse_seconds
+    return frames.seconds
 
 
 def _are_in_order(times: Times | None) -> TypeGuard[Sequence[float] | NDArray[np.floating]]:
