@@ -78,12 +78,14 @@ def run(subject: str, rows: list[Row | Experiment], folder: Path, seed: int) -> 
     for row in rows:
         results: Mapping[str, Any] | None
         try:
-            results, said = done(subject, row, folder, seed)
+            results, line = done(subject, row, folder, seed)
         except Skipped as reason:
-            results, said = {}, f"{row.name}: skipped, {reason}"
+            results = {}
+            line = f"{row.name}: skipped, {reason}"
         except RuntimeError as error:
-            results, said = None, f"{row.name}: failed, {error}"
-        print(said + "\n", flush=True)
+            results = None
+            line = f"{row.name}: failed, {error}"
+        print(line + "\n", flush=True)
         yield row, results
 
 
@@ -92,8 +94,8 @@ def done(
 ) -> tuple[Mapping[str, Any], str]:
     """Return the figures of a row, and its block of the table."""
     if isinstance(row, Experiment):
-        found = findings(row, folder, seed)
-        return found, table.experiment(row, found)
+        result = findings(row, folder, seed)
+        return result, table.experiment(row, result)
     results, missing = measured(subject, row, folder)
     return results, table.block(row, results, missing)
 
@@ -126,14 +128,14 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"{table.summary(outcomes)}; it took {time.perf_counter() - start:.0f} s")
     if options.json:
         figures = {
-            row.name: {who: plain(one) for who, one in (found or {}).items()}
-            for row, found in outcomes
+            row.name: {who: plain(value) for who, value in (results_of_row or {}).items()}
+            for row, results_of_row in outcomes
         }
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf8")
     if stopped:
         print("stopped before the end", file=sys.stderr)
         return STOPPED
-    return int(any(said == "MISSED" for _, _, said in verdicts(outcomes)))
+    return int(any(line == "MISSED" for _, _, line in verdicts(outcomes)))
 
 
 if __name__ == "__main__":

@@ -50,7 +50,8 @@ class Film(NamedTuple):
 def psnr(E: ArrayLike, truth: Float) -> float:
     """Return the PSNR of log2 radiance, dB."""
     floor = np.quantile(truth, 0.01)
-    a, b = (np.log2(np.maximum(one, floor)) for one in (np.asarray(E), truth))
+    a = np.log2(np.maximum(np.asarray(E), floor))
+    b = np.log2(np.maximum(truth, floor))
     off = a - b - np.median(a - b)
     return float(20 * np.log10(np.ptp(b) / np.sqrt(np.mean(off**2))))
 
@@ -79,26 +80,28 @@ def film(name: str, step: int, *, pan: int = 1) -> Film:
     place = layers(name, (SHAPE[0], SHAPE[1] + count))
     offsets = np.stack([np.zeros(count, int), pan * np.arange(count)], axis=-1)
     turn = camera.times_around(place.radiance, 2, stops=4)
-    rng, frames, truth, hidden = np.random.default_rng(0), [], [], []
+    rng = np.random.default_rng(0)
+    frames = []
+    truth = []
+    hidden = []
     for j, at in enumerate(movers.path(count, (0, step))):
-        seen, mask = (
-            views(one, offsets)[j]
-            for one in movers.compose_moment(place.radiance, figure(place), at)
-        )
-        truth.append(seen)
-        hidden.append(mask > 0)
+        radiance, mask = movers.compose_moment(place.radiance, figure(place), at)
+        truth.append(views(radiance, offsets)[j])
+        hidden.append(views(mask, offsets)[j] > 0)
         frames.append(
             camera.shoot(truth[-1], turn[[j % 2]], camera.Camera(**WELL), rng=rng).images[0]
         )
     return Film(np.stack(frames), turn, np.stack(truth), ~np.any(hidden, axis=0))
 
 
-def compared(found: Mapping[str, list[float]], seconds: float) -> dict[str, list[float]]:
+def compared(errors: Mapping[str, list[float]], seconds: float) -> dict[str, list[float]]:
     """Return the PSNR of each way in every sequence, ours less the others', and the time."""
-    ours = np.array(found["ours"])
-    less = {f"ours less {other}, dB": (ours - found[other]).tolist() for other in list(found)[:-1]}
+    ours = np.array(errors["ours"])
+    less = {
+        f"ours less {other}, dB": (ours - errors[other]).tolist() for other in list(errors)[:-1]
+    }
     return (
-        {f"{way}, dB": values for way, values in found.items()}
+        {f"{way}, dB": values for way, values in errors.items()}
         | less
         | {"processor seconds each": [seconds]}
     )
@@ -106,55 +109,63 @@ def compared(found: Mapping[str, list[float]], seconds: float) -> dict[str, list
 
 def patch_based(_: Path) -> dict[str, list[float]]:
     """Return figures of the bracket's middle photograph, made three ways."""
-    found: dict[str, list[float]] = {"plain merge": [], "ghosts, same reference": [], "ours": []}
+    errors: dict[str, list[float]] = {"plain merge": [], "ghosts, same reference": [], "ours": []}
     seconds = 0.0
     for name, step in sequences():
         taken = bracket(name, step)
-        Z, t, truth = taken.bracket.images, taken.bracket.times, taken.moments[1]
+        Z = taken.bracket.images
+        t = taken.bracket.times
+        truth = taken.moments[1]
         start = process_time()
         H = patches.synthesise(Z, t, G)
         seconds += process_time() - start
         led = ghosts.remove_ghosts(Z, t, G, fixed=1).E
-        for way, E in zip(found, (merge(Z, t, G), led, H), strict=True):
-            found[way].append(psnr(E, truth))
-    return compared(found, seconds / len(sequences()))
+        for way, E in zip(errors, (merge(Z, t, G), led, H), strict=True):
+            errors[way].append(psnr(E, truth))
+    return compared(errors, seconds / len(sequences()))
 
 
 def alternating(_: Path) -> dict[str, list[float]]:
     """Return figures of the films' inner frames: means over the frames of each film, and the worst frame."""
-    found: dict[str, list[float]] = {"plain merge": [], "ghosts, same reference": [], "ours": []}
-    worst, seconds = [], 0.0
+    errors: dict[str, list[float]] = {"plain merge": [], "ghosts, same reference": [], "ours": []}
+    worst = []
+    seconds = 0.0
     for name, step in sequences():
         shot = film(name, step)
         start = process_time()
         ours = video.merge(shot.frames, shot.turn, G)
         seconds += process_time() - start
         of_frames = [figures_of(shot, ours, i) for i in range(1, FRAMES + 1)]
-        for way, values in zip(found, np.mean(of_frames, axis=0), strict=True):
-            found[way].append(float(values))
+        for way, values in zip(errors, np.mean(of_frames, axis=0), strict=True):
+            errors[way].append(float(values))
         worst.append(float(np.min([values[2] - values[0] for values in of_frames])))
     least = {"ours less plain merge, worst frame, dB": worst}
-    return compared(found, seconds / len(sequences()) / (FRAMES + 2)) | least
+    return compared(errors, seconds / len(sequences()) / (FRAMES + 2)) | least
 
 
 def figures_of(shot: Film, ours: Float, i: int) -> list[float]:
     """Return the PSNR of frame i: of it and its neighbours merged, without ghosts, and by ours."""
-    near, times = shot.frames[i - 1 : i + 2], shot.turn[np.arange(i - 1, i + 2) % 2]
+    near = shot.frames[i - 1 : i + 2]
+    times = shot.turn[np.arange(i - 1, i + 2) % 2]
     led = ghosts.remove_ghosts(near, times, G, fixed=1).E
     return [psnr(E, shot.truth[i]) for E in (merge(near, times, G), led, ours[i])]
 
 
 def flickering(_: Path) -> dict[str, list[float]]:
     """Return the flicker of what stands still, in display levels: adapted frame by frame, and to three."""
-    found: dict[str, list[float]] = {"frame by frame, levels": [], "steady, levels": []}
+    errors: dict[str, list[float]] = {"frame by frame, levels": [], "steady, levels": []}
     films = [film(name, STEPS["fast"], pan=0) for name in PLACES]
-    merged = [(video.merge(one.frames, one.turn, G), one.still) for one in films]
+    merged = [
+        (video.merge(steady_state.frames, steady_state.turn, G), steady_state.still)
+        for steady_state in films
+    ]
     for maps, still in [*merged, lamps()]:
-        for way, span in zip(found, (0, 1), strict=True):
+        for way, span in zip(errors, (0, 1), strict=True):
             states = steady.tonemap_steps(maps, reinhard.tonemap, span=span)
-            found[way].append(steady.flicker((state.Ld for state in states), still))
-    each, together = (np.array(values) for values in found.values())
-    return found | {"steady over frame by frame": (together / each).tolist()}
+            errors[way].append(steady.flicker((state.Ld for state in states), still))
+    alone, together = errors.values()
+    ratio = np.array(together) / np.array(alone)
+    return errors | {"steady over frame by frame": ratio.tolist()}
 
 
 def lamps() -> tuple[Float, NDArray[np.bool_]]:
@@ -163,13 +174,15 @@ def lamps() -> tuple[Float, NDArray[np.bool_]]:
     lamp = movers.ball(SHAPE, (20, 30), 8, [20 * float(room.max())] * 3, stripes=0)
     lit, mask = movers.compose_moment(room, lamp, (0, 0))
     on = np.random.default_rng(0).random(12) < 0.5
-    return np.stack([lit if one else room for one in on]), mask == 0
+    return np.stack([lit if is_on else room for is_on in on]), mask == 0
 
 
 def split(_: Path) -> dict[str, list[float]]:
     """Return figures of one moment on three sensors, and of a bracket with the same shares of the light."""
-    found: dict[str, list[float]] = {"plain merge": [], "ours": []}
-    e, g, seconds = splitter.shares(), np.log(np.maximum(np.arange(65536), 0.5) / 32768), 0.0
+    errors: dict[str, list[float]] = {"plain merge": [], "ours": []}
+    e = splitter.shares()
+    g = np.log(np.maximum(np.arange(65536), 0.5) / 32768)
+    seconds = 0.0
     for name, step in sequences():
         place = layers(name, SHAPE)
         unit = 2 * float(np.median(place.radiance))
@@ -183,10 +196,10 @@ def split(_: Path) -> dict[str, list[float]]:
         E = splitter.merge(splitter.shoot(taken.moments[1], e, bits=16, **WELL), e)
         seconds += process_time() - start
         for way, made in zip(
-            found, (merge(taken.bracket.images, taken.bracket.times, g), E), strict=True
+            errors, (merge(taken.bracket.images, taken.bracket.times, g), E), strict=True
         ):
-            found[way].append(psnr(made, taken.moments[1]))
-    return compared(found, seconds / len(sequences()))
+            errors[way].append(psnr(made, taken.moments[1]))
+    return compared(errors, seconds / len(sequences()))
 
 
 def experiment(name: str, title: str, run: Callable[[Path], Any], *holds: Any) -> Experiment:

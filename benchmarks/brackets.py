@@ -292,7 +292,7 @@ def run_program(
     target.unlink(missing_ok=True)
     try:
         with one_thread():
-            usage = process(program.command(simulated.files, target), one=False)
+            usage = process(program.command(simulated.files, target), one_thread=False)
         return usage, measure_errors(read_map(target), simulated)
     except (RuntimeError, OSError, ValueError) as error:
         print(f"  {name}, {simulated.name}: no map, {str(error)[-300:]}", flush=True)
@@ -313,10 +313,10 @@ def measure_errors(E: Float, simulated: SimulatedBracket) -> MapErrors:
     is_exposed = (levels >= LOWEST_LEVEL) & (levels <= HIGHEST_LEVEL)
     is_measured = is_exposed.all(axis=-1).any(axis=0)
     truth = simulated.E[is_measured].astype(np.float64)
-    found = E[is_measured]
-    is_positive = np.isfinite(found) & (found > 0)
-    errors = np.full(found.shape, np.nan)
-    errors[is_positive] = np.log2(found[is_positive] / truth[is_positive])
+    measured = E[is_measured]
+    is_positive = np.isfinite(measured) & (measured > 0)
+    errors = np.full(measured.shape, np.nan)
+    errors[is_positive] = np.log2(measured[is_positive] / truth[is_positive])
     errors -= np.nanmedian(errors, axis=0)
     sizes = np.nan_to_num(np.abs(errors), nan=MISSING_STOPS)
     color_sizes = np.nan_to_num(np.abs(errors[:, [0, 2]] - errors[:, [1]]), nan=MISSING_STOPS)

@@ -29,7 +29,8 @@ from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.source_code import closure, inline
 
-STARTS, TRIES = 7, 50
+STARTS = 7
+TRIES = 50
 SCALED = "def scaled(x): return 2 * x\n"
 CHANGES = 500
 LOADED = "numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading.grader"
@@ -59,24 +60,25 @@ def _of_all() -> float:
 
 def homeworks(folder: Path) -> dict[str, Any]:
     """Return what all checks of each homework cost."""
-    one, plans = start(_of_children), plan.read().homeworks
+    seconds_once = start(_of_children)
+    plans = plan.read().homeworks
     spent = {
-        name: sum(_seconds(partial(_check, task.id), time.process_time) for task in each.tasks)
-        for name, each in plans.items()
+        name: sum(_seconds(partial(_check, task.id), time.process_time) for task in homework.tasks)
+        for name, homework in plans.items()
     }
     return {
-        "starts of Python, the dearest homework": max(spent.values()) / one,
-        "s of a start": one,
-    } | {f"starts of Python, {name}": seconds / one for name, seconds in spent.items()}
+        "starts of Python, the dearest homework": max(spent.values()) / seconds_once,
+        "s of a start": seconds_once,
+    } | {f"starts of Python, {name}": seconds / seconds_once for name, seconds in spent.items()}
 
 
 def _check(task: str) -> None:
     """Run every check of a task on the library's function."""
     module = import_module(f"hdrlab.course.checks.specification.test_{task}")
-    given = {"subject": inprocess.library(), "rng": np.random.default_rng(0)}
+    arguments = {"subject": inprocess.library(), "rng": np.random.default_rng(0)}
     for name, check in vars(module).items():
         if name.startswith("test_"):
-            check(**{word: given[word] for word in inspect.signature(check).parameters})
+            check(**{word: arguments[word] for word in inspect.signature(check).parameters})
 
 
 def graded(folder: Path) -> dict[str, Any]:
@@ -122,9 +124,8 @@ def _begin(subject: Subject) -> None:
 
 def hostile(folder: Path) -> dict[str, Any]:
     """Return what a file costs that changes one thing many times."""
-    once, twice = (
-        _seconds(partial(_read, changes), time.process_time) for changes in (CHANGES, 2 * CHANGES)
-    )
+    once = _seconds(partial(_read, CHANGES), time.process_time)
+    twice = _seconds(partial(_read, 2 * CHANGES), time.process_time)
     return {
         f"starts of Python, {2 * CHANGES} changes": twice / start(_of_children),
         "power of the changes that it grows with": log2(twice / once),

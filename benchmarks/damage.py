@@ -356,13 +356,13 @@ def judge_bands(_: Path, *, hand_pixels: int) -> dict[str, ArrayLike]:
                     counts[damage]["found"] += 1
                 else:
                     counts[damage]["wrong photo"] += 1
-    found: dict[str, ArrayLike] = {
+    bands: dict[str, ArrayLike] = {
         f"{damage}: found, missed, wrong photo": [
             count["found"], count["missed"], count["wrong photo"],
         ]
         for damage, count in counts.items()
     }  # fmt: skip
-    return found | {FALSE_ALARMS: false_alarms}
+    return bands | {FALSE_ALARMS: false_alarms}
 
 
 FALSE_ALARMS = f"sound brackets of {SOUND_COUNT * len(BAND_SCENES)} with a false alarm"

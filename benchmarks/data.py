@@ -20,9 +20,14 @@ from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.bracket import Bracket, bracket
 from scenes.computed import view
 
-SMALL, LARGE = (1224, 1632), (3000, 4000)  # 2 and 12 megapixels
+# 2 and 12 megapixels
+SMALL = (1224, 1632)
+LARGE = (3000, 4000)
 PIXELS = LARGE[0] * LARGE[1] / (SMALL[0] * SMALL[1])
-FRAMES, DECADES, FULL_WELL, READ_NOISE = 7, 6.5, 50_000.0, 3.0
+FRAMES = 7
+DECADES = 6.5
+FULL_WELL = 50_000.0
+READ_NOISE = 3.0
 RESPONSE = "film"
 SEEN = (5, 250)  # between these levels a photograph measures a pixel
 Size = tuple[int, int]
@@ -76,9 +81,12 @@ def log_error(E: Array, truth: Array, images: Array) -> float:
 
 def curve_error(g: Array) -> float:
     """Return the RMS error of f^-1 over the levels 10 to 250, in % of its top, against the camera's own."""
-    found, own = (np.exp(np.reshape(curve, (256, -1))[10:251]) for curve in (g, true_g(RESPONSE)))
-    found = found * (found * own).sum(axis=0) / (found**2).sum(axis=0)  # the scale is free
-    return float(100 * np.sqrt(np.mean((found - own) ** 2)) / own.max())
+    estimate = np.exp(np.reshape(g, (256, -1))[10:251])
+    own = np.exp(np.reshape(true_g(RESPONSE), (256, -1))[10:251])
+    estimate = (
+        estimate * (estimate * own).sum(axis=0) / (estimate**2).sum(axis=0)
+    )  # the scale is free
+    return float(100 * np.sqrt(np.mean((estimate - own) ** 2)) / own.max())
 
 
 def stored(folder: Path, name: str, make: Callable[[], Array]) -> Array:

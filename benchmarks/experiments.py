@@ -44,11 +44,11 @@ class Hold(NamedTuple):
     limits: str
     published: str = "-"
 
-    def verdict(self, found: Found) -> str:
+    def verdict(self, figures: Found) -> str:
         """Return "ok", "MISSED", or "not judged"."""
-        if not found:
+        if not figures:
             return "not judged"
-        value = np.array(found[self.what])  # NaN lies nowhere
+        value = np.array(figures[self.what])  # NaN lies nowhere
         return "ok" if np.all((value >= self.low) & (value <= self.high)) else "MISSED"
 
 
@@ -81,7 +81,8 @@ def at_least(what: str, *limits: float, published: str = "-") -> Hold:
 
 def near(what: str, *values: float, by: float, published: str = "-") -> Hold:
     """Hold numbers that differ from these by at most `by`."""
-    low, high = (tuple(value + d for value in values) for d in (-by, by))
+    low = tuple(value - by for value in values)
+    high = tuple(value + by for value in values)
     return Hold(what, low, high, f"{listed(values)} +- {by:g}", published)
 
 
@@ -95,18 +96,20 @@ def spread(errors: NDArray[np.float64]) -> Numbers:
     return (*np.quantile(errors, (0.5, 0.95)).tolist(), float(errors.max()))
 
 
-def findings(one: Experiment, folder: Path, seed: int = 0) -> Found:
+def findings(experiment: Experiment, folder: Path, seed: int = 0) -> Found:
     """Return what an experiment finds; Skipped and Ctrl-C pass, any other failure becomes a RuntimeError."""
     try:
-        found = one.run(folder, seed=seed) if one.has_seed else one.run(folder)
+        figures = (
+            experiment.run(folder, seed=seed) if experiment.has_seed else experiment.run(folder)
+        )
         return {
             what: tuple(np.atleast_1d(value).astype(float).tolist())
-            for what, value in found.items()
+            for what, value in figures.items()
         }
     except Skipped:
         raise
     except Exception as error:
-        raise RuntimeError(f"{one.name}: {type(error).__name__}, {error}") from error
+        raise RuntimeError(f"{experiment.name}: {type(error).__name__}, {error}") from error
 
 
 def real(folder: Path, name: str) -> Path:

@@ -30,8 +30,12 @@ from benchmarks.measure import ROOT
 from hdrlab.course.gallery import ballots, collect, store, tokens
 from hdrlab.io import photos
 
-VOTERS, WITHIN, TEAM, PICTURES = 300, 10.0, 2, 8
-SLOW, KINDS = 1300, ("wall", "picture", "ballot")
+VOTERS = 300
+WITHIN = 10.0
+TEAM = 2
+PICTURES = 8
+SLOW = 1300
+KINDS = ("wall", "picture", "ballot")
 OPEN_FOR = "2099-12-31T23:59+00:00"
 
 
@@ -48,7 +52,8 @@ class Connection:
     """One voter's connection, kept open, with the cookie that the gallery gives."""
 
     def __init__(self, address: str) -> None:
-        self.parts, self.cookie = urlsplit(address), ""
+        self.parts = urlsplit(address)
+        self.cookie = ""
         self.streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
     async def ask(
@@ -70,7 +75,8 @@ class Connection:
             self.streams = await asyncio.open_connection(self.parts.hostname, self.parts.port)
         reader, writer = self.streams
         lines = [f"{method} {path} HTTP/1.1", f"Host: {self.parts.netloc}", f"Accept: {accept}"]
-        lines += [f"Cookie: {self.cookie}"] if self.cookie else []
+        if self.cookie:
+            lines.append(f"Cookie: {self.cookie}")
         if method == "POST":
             lines += [
                 f"Origin: {self.parts.scheme}://{self.parts.netloc}",
@@ -91,7 +97,8 @@ class Connection:
 
 def build(folder: Path, voters: int) -> tuple[Path, dict[str, str]]:
     """Make a gallery of teams of two, and return it with everybody's token."""
-    room, rng = folder / "gallery", np.random.default_rng(1)
+    room = folder / "gallery"
+    rng = np.random.default_rng(1)
     store.create(room, "Spring", _when(), 3)
     picture = folder / "picture.png"
     with closing(store.connect(room)) as db:
@@ -150,19 +157,22 @@ class Voter:
     """Somebody who comes, looks and votes; the seconds of it and the ballots go into `done`."""
 
     def __init__(self, address: str, who: str, token: str, done: Voted) -> None:
-        self.one, self.who, self.token, self.done = Connection(address), who, token, done
+        self.connection = Connection(address)
+        self.who = who
+        self.token = token
+        self.done = done
         self.refused = 0
 
-    async def timed(self, kind: str, *asked: Any) -> tuple[int, bytes]:
+    async def timed(self, kind: str, *request: Any) -> tuple[int, bytes]:
         """Return an answer, and note how long it took."""
         begun = time.perf_counter()
-        answer = await self.one.ask(*asked)
+        answer = await self.connection.ask(*request)
         self.done.seconds[kind].append(time.perf_counter() - begun)
         return answer
 
     async def look(self) -> tuple[str, list[str]]:
         """Enter, open the wall and some pictures; return the key of ballots, and the marks of pictures."""
-        await self.one.ask("POST", f"/enter/{self.token}")
+        await self.connection.ask("POST", f"/enter/{self.token}")
         _, page = await self.timed("wall", "GET", "/")
         text = page.decode()
         marks = [part[:24] for part in text.split('name="mark" value="')[1:]]
@@ -181,15 +191,16 @@ class Voter:
 
     def leave(self) -> None:
         """Close the connection."""
-        if self.one.streams:
-            self.one.streams[1].close()
+        if self.connection.streams:
+            self.connection.streams[1].close()
 
 
 async def voted(
     address: str, links: dict[str, str], *, within: float, changes: int, together: bool
 ) -> Voted:
     """Let everybody vote, and return what they saw. A server that dies ends it."""
-    random, gate = Random(7), asyncio.Barrier(len(links)) if together else None
+    random = Random(7)
+    gate = asyncio.Barrier(len(links)) if together else None
     done = Voted({kind: [] for kind in KINDS}, {}, {}, 0)
     voters = [Voter(address, who, token, done) for who, token in links.items()]
 
@@ -225,17 +236,17 @@ def judged(room: Path, seen: Voted) -> dict[str, Any]:
         kept.get(who) not in (frozenset(last), frozenset(seen.sent[who]))
         for who, last in seen.last.items()
     )
-    found: dict[str, Any] = {
+    figures: dict[str, Any] = {
         "ballots lost": lost,
         "ballots double": rows - len(kept),
         "refused": seen.refused,
     }
     for kind, seconds in seen.seconds.items():
         if seconds:
-            found[f"ms of a {kind}: median, 95 %, worst"] = 1e3 * np.quantile(
+            figures[f"ms of a {kind}: median, 95 %, worst"] = 1e3 * np.quantile(
                 seconds, (0.5, 0.95, 1)
             )
-    return found | {"voters": len(seen.last)}
+    return figures | {"voters": len(seen.last)}
 
 
 def voters(address: str, links: str, within: str, changes: str, together: str) -> None:
@@ -255,7 +266,8 @@ def voters(address: str, links: str, within: str, changes: str, together: str) -
 
 async def hold_half_requests(address: str, count: int) -> None:
     """Hold so many connections with half a request each; who is sent away comes again after a second."""
-    parts, most = urlsplit(address), resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    parts = urlsplit(address)
+    most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
     async def hold() -> None:
@@ -318,7 +330,8 @@ def killed(
     folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 1.5
 ) -> dict[str, Any]:
     """Return how many acknowledged ballots were lost when the server was killed while they came in."""
-    lost = acknowledged = 0
+    lost = 0
+    acknowledged = 0
     for k in range(times):
         home = folder / f"killed{k}"
         room, links = build(home, count)

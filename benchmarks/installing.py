@@ -34,12 +34,13 @@ def install(folder: Path, extra: str = "") -> float:
 
 def installed(folder: Path) -> tuple[dict[str, float], dict[str, set[str]]]:
     """Return the megabytes of each package in an environment, and the names of those that it needs itself."""
-    sizes, needs = {}, {}
-    for one in metadata.distributions(path=[str(next(folder.rglob("site-packages")))]):
-        name = canonical(one.metadata["Name"])
-        paths = [Path(str(file.locate())) for file in one.files or ()]
+    sizes = {}
+    needs = {}
+    for distribution in metadata.distributions(path=[str(next(folder.rglob("site-packages")))]):
+        name = canonical(distribution.metadata["Name"])
+        paths = [Path(str(file.locate())) for file in distribution.files or ()]
         sizes[name] = sum(path.stat().st_size for path in paths if path.is_file()) / MEGABYTE
-        required = [text for text in one.requires or () if "extra ==" not in text]
+        required = [text for text in distribution.requires or () if "extra ==" not in text]
         needs[name] = {canonical(re.split(r"[^\w.-]", text)[0]) for text in required}
     return sizes, {name: among & sizes.keys() for name, among in needs.items()}
 
@@ -51,27 +52,33 @@ def canonical(name: str) -> str:
 
 def closure(name: str, needs: dict[str, set[str]]) -> set[str]:
     """Return a package and all that it needs."""
-    found, waiting = set(), [name]
+    names = set()
+    waiting = [name]
     while waiting:
-        one = waiting.pop()
-        if one not in found:
-            found.add(one)
-            waiting += needs[one]
-    return found
+        name_taken = waiting.pop()
+        if name_taken not in names:
+            names.add(name_taken)
+            waiting += needs[name_taken]
+    return names
 
 
 def shares(sizes: dict[str, float], needs: dict[str, set[str]]) -> dict[str, tuple[float, int]]:
     """Return megabytes and count of packages by what hdrlab names, the largest first."""
     named = needs["hdrlab"]
     brings = {name: closure(name, needs) - (named - {name}) for name in named}
-    users = Counter(one for among in brings.values() for one in among)
-    rows = {name: [one for one in among if users[one] == 1] for name, among in brings.items()}
+    users = Counter(package for among in brings.values() for package in among)
+    rows = {
+        name: [package for package in among if users[package] == 1]
+        for name, among in brings.items()
+    }
     shared = sizes.keys() - {
-        one for one, count in users.items() if count == 1
+        package for package, count in users.items() if count == 1
     }  # extras of others, too
     rows["what several of them need"] = sorted(shared - {"hdrlab", "pip", "setuptools"})
     rows["hdrlab itself"] = ["hdrlab"]
-    totals = {name: (sum(sizes[one] for one in among), len(among)) for name, among in rows.items()}
+    totals = {
+        name: (sum(sizes[package] for package in among), len(among)) for name, among in rows.items()
+    }
     return dict(sorted(totals.items(), key=lambda row: -row[1][0]))
 
 
@@ -83,7 +90,8 @@ def main(extra: str = "") -> None:
     print("| package | MB | packages |\n|---|---:|---:|")
     for row, (size, count) in rows.items():
         print(f"| {row} | {size:.1f} | {count} |")
-    total, count = (sum(each) for each in zip(*rows.values(), strict=True))
+    total = sum(size for size, _ in rows.values())
+    count = sum(packages for _, packages in rows.values())
     print(f"| together, in {seconds:.0f} s | {total:.0f} | {count} |")
 
 

@@ -28,11 +28,10 @@ from benchmarks.rows import Case, Figures, Results, Row, Run, Usage
 ROOT = Path(__file__).parents[1]
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
-ROUNDS, MOST_ROUNDS, ENOUGH = (
-    5,
-    41,
-    3.0,
-)  # rounds at least and at most, and seconds after which the least suffice
+# After so many seconds, the smallest number of rounds is enough.
+MIN_ROUNDS = 5
+MAX_ROUNDS = 41
+MIN_SECONDS = 3.0
 # Runs of several seconds vary by little: so many rounds suffice if they took so many seconds.
 LONG_ROUNDS = 2
 LONG_SECONDS = 10.0
@@ -47,15 +46,16 @@ def rows_of(subject: str) -> Sequence[Any]:
 
 def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, str]]:
     """Return the Figures of everyone who did the work of a row, and why others did not."""
-    one, default = child(subject, row, folder, "one"), child(subject, row, folder, "default")
+    one_thread = child(subject, row, folder, "one")
+    default = child(subject, row, folder, "default")
     results = {}
-    for who, seconds in one["seconds"].items():
-        memory = one["megabytes"][who]
+    for who, seconds in one_thread["seconds"].items():
+        memory = one_thread["megabytes"][who]
         if memory is None:
             memory = child(subject, row, folder, "memory", who)["megabytes"]
         times = median(seconds), median(default["seconds"][who])
-        results[who] = Figures(*times, memory, one["errors"][who], one["floors"][who])
-    return results, one["missing"]
+        results[who] = Figures(*times, memory, one_thread["errors"][who], one_thread["floors"][who])
+    return results, one_thread["missing"]
 
 
 def child(subject: str, row: Row, folder: Path, *what: str) -> dict[str, Any]:
@@ -92,7 +92,10 @@ def timed(case: Case) -> dict[str, Any]:
     The memory of a command is known from that round, too; None where nothing else than a process of
     its own can tell it.
     """
-    errors, floors, rate, least = {}, {}, bandwidth(), list[float]()
+    errors = {}
+    floors = {}
+    rate = bandwidth()
+    least = list[float]()
     megabytes = {}
     for who, run in case.runs.items():
         result = run()
@@ -102,9 +105,9 @@ def timed(case: Case) -> dict[str, Any]:
         floors[who] = (reads + size(result)) / rate if reads else None
     seconds: dict[str, list[float]] = {who: [] for who in case.runs}
     start = time.perf_counter()
-    for done in range(MOST_ROUNDS):
+    for done in range(MAX_ROUNDS):
         elapsed = time.perf_counter() - start
-        if done >= ROUNDS and elapsed > ENOUGH:
+        if done >= MIN_ROUNDS and elapsed > MIN_SECONDS:
             break
         if done >= LONG_ROUNDS and elapsed > LONG_SECONDS:
             break
@@ -154,7 +157,8 @@ def peak(run: Run) -> float | None:
         return warm.megabytes
     del warm
     gc.collect()
-    if not (status := Path("/proc/self/status")).exists():
+    status = Path("/proc/self/status")
+    if not status.exists():
         return None
     if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
         trim(0)  # what is free but kept would hide as much of the peak
@@ -169,12 +173,12 @@ def peak(run: Run) -> float | None:
 def process(
     command: list[str],
     *,
-    one: bool,
+    one_thread: bool,
     source: Path | str = os.devnull,
     target: Path | str = os.devnull,
 ) -> Usage:
     """Return what a command takes; in one thread it stays on one processor, whatever its libraries like."""
-    cpu = max(os.sched_getaffinity(0)) if one and hasattr(os, "sched_getaffinity") else -1
+    cpu = max(os.sched_getaffinity(0)) if one_thread and hasattr(os, "sched_getaffinity") else -1
     launch = [
         sys.executable,
         str(ROOT / "benchmarks" / "launch.py"),

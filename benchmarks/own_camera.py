@@ -210,7 +210,7 @@ class Errors:
     holds: dict[str, list[bool]]
 
 
-def compare(found: CameraNoise, simulated: Sensor) -> Errors:
+def compare(measured: CameraNoise, simulated: Sensor) -> Errors:
     """Return the largest errors of the channels against the sensor that was simulated."""
     truth = {
         "gain": simulated.gain,
@@ -220,7 +220,7 @@ def compare(found: CameraNoise, simulated: Sensor) -> Errors:
     }
     worst = dict.fromkeys(truth, 0.0)
     holds: dict[str, list[bool]] = {quantity: [] for quantity in truth}
-    for channel in found.channels:
+    for channel in measured.channels:
         for quantity, true in truth.items():
             value, low, high = getattr(channel, quantity)
             worst[quantity] = max(worst[quantity], abs(value / true - 1))
@@ -240,9 +240,9 @@ def measure_cameras(folder: Path) -> Mapping[str, ArrayLike]:
     for number in tqdm(range(CAMERAS), "cameras", leave=False):
         simulated = make_sensor(number)
         with tempfile.TemporaryDirectory() as photos:
-            found = measure_camera_noise(*write_photos(Path(photos), simulated, rng=number))
-        errors.append(compare(found, simulated))
-        false_warnings += len(found.warnings)
+            measured = measure_camera_noise(*write_photos(Path(photos), simulated, rng=number))
+        errors.append(compare(measured, simulated))
+        false_warnings += len(measured.warnings)
     results: dict[str, ArrayLike] = {
         "gain": max(error.gain for error in errors),
         "read noise": max(error.read_noise for error in errors),
@@ -261,8 +261,8 @@ def find_faults(folder: Path) -> Mapping[str, ArrayLike]:
     results: dict[str, ArrayLike] = {}
     for name, fault in make_faults(simulated).items():
         with tempfile.TemporaryDirectory() as photos:
-            found = measure_camera_noise(*write_photos(Path(photos), simulated, fault=fault))
-        results[name] = float(FAULT_KINDS[name] in {warning.kind for warning in found.warnings})
+            measured = measure_camera_noise(*write_photos(Path(photos), simulated, fault=fault))
+        results[name] = float(FAULT_KINDS[name] in {warning.kind for warning in measured.warnings})
     return results
 
 

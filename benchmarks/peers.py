@@ -11,7 +11,10 @@ from benchmarks.measure import process
 from benchmarks.rows import Run, Usage
 from hdrlab.core.bracket import Bracket
 
-OPENCV, COLOUR, PFS, OPENEXR = "OpenCV", "colour-hdri", "pfstools", "OpenEXR"
+OPENCV = "OpenCV"
+COLOUR = "colour-hdri"
+PFS = "pfstools"
+OPENEXR = "OpenEXR"
 HALIDE = "Halide"
 PACKAGES = {OPENCV: "opencv-contrib-python-headless", COLOUR: "colour-hdri", OPENEXR: "OpenEXR"}
 PACKAGES |= {HALIDE: "halide"}
@@ -21,10 +24,10 @@ class Missing(Exception):
     """A peer that is not installed; its text says what to install."""
 
 
-def opencv(one: bool) -> ModuleType:
+def opencv(one_thread: bool) -> ModuleType:
     """Return cv2, held to one thread or not."""
     cv2 = _module("cv2", OPENCV)
-    if one:
+    if one_thread:
         cv2.setNumThreads(1)
     return cv2
 
@@ -64,33 +67,36 @@ def program(name: str, installation: str) -> str:
 
 def pfs_bracket(bracket: Bracket, folder: Path) -> Path:
     """Return a file with the frames of a bracket as pfstools read them."""
-    frames, listed = folder / "photographs.pfs", folder / "photographs.hdrgen"
+    frames = folder / "photographs.pfs"
+    listed = folder / "photographs.hdrgen"
     lines = []
     for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
         path = folder / f"photograph-{j}.ppm"
         path.write_bytes(b"P6\n%d %d\n255\n" % image.shape[1::-1] + image.tobytes())
         lines.append(f"{path} {1 / time:.9g} 1 100 0\n")
     listed.write_text("".join(lines), encoding="utf8")
-    process([pfstools("pfsinhdrgen"), str(listed)], one=False, target=frames)
+    process([pfstools("pfsinhdrgen"), str(listed)], one_thread=False, target=frames)
     return frames
 
 
 def pfs_run(
-    command: list[str], source: Path, one: bool, idle: tuple[str, ...] = ("pfstag",)
+    command: list[str], source: Path, one_thread: bool, idle: tuple[str, ...] = ("pfstag",)
 ) -> Run:
     """Return a run of one of the pfstools, less what the idle one takes: to read and write the same alone."""
-    busy, rest = ([pfstools(name), *options] for name, *options in (command, idle))
+    busy = [pfstools(command[0]), *command[1:]]
+    rest = [pfstools(idle[0]), *idle[1:]]
 
     def run() -> Usage:
-        spent = process(busy, one=one, source=source)
-        return spent.net(process(rest, one=one, source=source))
+        spent = process(busy, one_thread=one_thread, source=source)
+        return spent.net(process(rest, one_thread=one_thread, source=source))
 
     return run
 
 
 def present(makers: dict[str, Callable[[], Run]]) -> tuple[dict[str, Run], dict[str, str]]:
     """Return the runs of the peers that are there, and why the others are missing."""
-    runs, missing = {}, {}
+    runs = {}
+    missing = {}
     for peer, make in makers.items():
         try:
             runs[peer] = make()
@@ -101,13 +107,13 @@ def present(makers: dict[str, Callable[[], Run]]) -> tuple[dict[str, Run], dict[
 
 def versions() -> str:
     """Return the versions of the peers that are Python packages, for the head of a report."""
-    said = []
+    lines = []
     for peer, package in PACKAGES.items():
         try:
-            said.append(f"{peer} {version(package)}")
+            lines.append(f"{peer} {version(package)}")
         except PackageNotFoundError:
-            said.append(f"no {peer}")
-    return ", ".join(said)
+            lines.append(f"no {peer}")
+    return ", ".join(lines)
 
 
 def _module(name: str, peer: str) -> ModuleType:

@@ -55,7 +55,8 @@ def photographs(exposure: Float, brightness: Float, frames: int, k: int) -> Brac
 def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float, float]]:
     """Return error, gray and spread of each method on (frames, k, exposure, brightness)."""
     frames, k, exposure, brightness = case
-    taken, found = photographs(exposure, brightness, frames, k), {}
+    taken = photographs(exposure, brightness, frames, k)
+    errors = {}
     true = families.invert_curves(exposure, brightness)[0][RELIABLE_LEVELS, None]
     for name in METHODS:
         choice = recovery.choose_response(name, taken)
@@ -66,22 +67,26 @@ def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float
         left = consistency.measure_spread(
             consistency.measure_level_exposures(taken.images, taken.times, E)
         )
-        found[name] = (float(error), float(2 ** np.ptp(off, axis=1).max()), left)
-    return found
+        errors[name] = (float(error), float(2 ** np.ptp(off, axis=1).max()), left)
+    return errors
 
 
 def compared(folder: Path) -> Mapping[str, ArrayLike]:
     """Return the figures of each method by the number of frames."""
     exposure, brightness = measured_curves(folder)
     cases = [(frames, k, exposure[k], brightness[k]) for frames in STOPS for k in CAMERAS]
-    each = along(figures, cases, "brackets")
-    found: dict[str, ArrayLike] = {}
+    errors_of_cases = along(figures, cases, "brackets")
+    summary: dict[str, ArrayLike] = {}
     for frames in STOPS:
         for name in METHODS:
-            own = [one[name] for case, one in zip(cases, each, strict=True) if case[0] == frames]
+            own = [
+                values_of_camera[name]
+                for case, values_of_camera in zip(cases, errors_of_cases, strict=True)
+                if case[0] == frames
+            ]
             for what, values in zip(("error", "gray", "spread"), np.array(own).T, strict=True):
-                found[f"{frames} frames, {name}, {what}"] = spread(values)
-    return found
+                summary[f"{frames} frames, {name}, {what}"] = spread(values)
+    return summary
 
 
 ROWS = (

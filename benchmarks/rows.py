@@ -155,7 +155,8 @@ def ratio(results: Results, column: str = "seconds") -> float | None:
     peer = best_peer(results, column)
     if peer is None or OURS not in results:
         return None
-    theirs, ours = (float(getattr(results[who], column)) for who in (peer, OURS))
+    theirs = float(getattr(results[peer], column))
+    ours = float(getattr(results[OURS], column))
     return theirs / ours
 
 

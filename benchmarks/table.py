@@ -24,14 +24,14 @@ def block(row: Row, results: Results, missing: dict[str, str]) -> str:
     return "\n".join(lines + [verdict(row, n, results) for n in range(len(row.holds))])
 
 
-def experiment(row: Experiment, found: Found) -> str:
+def experiment(row: Experiment, figures: Found) -> str:
     """Return the block of an experiment: published, found, what must hold, and whether it does."""
     holds = {hold.what: hold for hold in row.holds}
     lines = [("", "published", "found", "hold", "")]
-    for what, numbers in found.items():
+    for what, numbers in figures.items():
         hold = holds.get(what)
         published = hold.published if hold else row.published.get(what, "-")
-        rest = (hold.limits, hold.verdict(found)) if hold else ("-", "")
+        rest = (hold.limits, hold.verdict(figures)) if hold else ("-", "")
         lines.append((what, published, listed(numbers), *rest))
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     cells = [
@@ -54,8 +54,12 @@ def verdict(row: Row, n: int, results: Results) -> str:
 def summary(outcomes: list[Outcome]) -> str:
     """Return how many holds are met, and which are not."""
     all_of_them = verdicts(outcomes)
-    met = sum(said == "ok" for *_, said in all_of_them)
-    rest = [f"  {said}: {row.name}, {hold.what}" for row, hold, said in all_of_them if said != "ok"]
+    met = sum(message == "ok" for *_, message in all_of_them)
+    rest = [
+        f"  {message}: {row.name}, {hold.what}"
+        for row, hold, message in all_of_them
+        if message != "ok"
+    ]
     return "\n".join([f"{met} of {len(all_of_them)} holds are met", *rest])
 
 

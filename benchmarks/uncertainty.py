@@ -58,7 +58,7 @@ WAYS = ("sensor known", "noise found", "response found, too")
 DECADES = range(6)
 KINDS = ("false alarms", "misses, clipped", "misses, dark")
 BRACKETS = ("window", "stlouis_arch", "frobisher", "memorial")
-LEAST = 200  # pixels of a bracket that make a median
+MIN_PIXELS_OF_A_MEDIAN = 200
 
 
 def decade(E: Float) -> NDArray[np.intp]:
@@ -78,8 +78,10 @@ def bound(Z: Float, t: Float, g: Float, light: Float, noise: Noise) -> Float:
 
 def alarms(E: Float, t: Float, response: Curve, s: Array) -> Float:
     """Return counts (2, 3): of pixels measured, clipped, dark in truth, those the map says so of, and all."""
-    Z, known = 255 * np.asarray(response(E * t[:, None, None])), np.isfinite(s)
-    clipped, dark = (E * t.min() >= 1), np.all(Z < 0.5, axis=0)
+    Z = 255 * np.asarray(response(E * t[:, None, None]))
+    known = np.isfinite(s)
+    clipped = E * t.min() >= 1
+    dark = np.all(Z < 0.5, axis=0)
     measured = np.any((Z >= 0.5) & (Z < int(0.98 * 255)), axis=0)
     kinds = ((measured, ~known), (clipped, known), (dark, known))
     return np.array(
@@ -100,8 +102,10 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float,
     rng = np.random.default_rng((22, i))
     E = np.maximum(PLACES[i % 4]((240, 360))[..., 1].astype(np.float64), 1e-9)
     well, read = np.exp(rng.uniform(np.log([2e3, 1]), np.log([5e4, 20])))
-    frames, stops = int(rng.integers(3, 8)), rng.uniform(1.2, 2.3)
-    times, own = camera.times_around(E, frames, stops=stops), decade(E)
+    frames = int(rng.integers(3, 8))
+    stops = rng.uniform(1.2, 2.3)
+    times = camera.times_around(E, frames, stops=stops)
+    own = decade(E)
 
     def shot(response: Curve | str, bits: int) -> Bracket:
         maker = camera.Camera(response=response, bits=bits, full_well=well, read_noise=read)
@@ -111,17 +115,17 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float,
         return np.asarray(np.interp(X, exposure, brightness), np.float64)
 
     taken = shot(own_curve, 8)
-    Z, t = taken.images, taken.times
+    Z = taken.images
+    t = taken.times
     true_g = families.invert_curves(exposure, brightness)[0]
     whole = float(np.exp(true_g[-1]))  # the exposure of a full well
-    known = Noise(*(np.array([one]) for one in (well / whole, read, 0.0)))
-    counts, widths = (
-        np.zeros((2, len(WAYS), len(DECADES))),
-        np.full((len(WAYS), len(DECADES)), np.nan),
-    )
+    known = Noise(*(np.array([value]) for value in (well / whole, read, 0.0)))
+    counts = np.zeros((2, len(WAYS), len(DECADES)))
+    widths = np.full((len(WAYS), len(DECADES)), np.nan)
     floor = bound(Z, t, true_g, whole * E, known)
     for way in range(len(WAYS)):
-        g, noise = true_g, known
+        g = true_g
+        noise = known
         if way == 2:
             g = recovery.find_response("auto", recovery.choose_response("auto", taken), taken).g
         if way:
@@ -129,14 +133,15 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float,
             noise = estimate_noise(Z, t, g, m)
         map_, s = merge_with_deviation(Z, t, g, *noise)
         if way == 1:
-            found_noise, unsure = float(noise.N[0] * whole / well), alarms(E, t, own_curve, s)
+            found_noise = float(noise.N[0] * whole / well)
+            unsure = alarms(E, t, own_curve, s)
         sure = np.isfinite(s) & np.isfinite(floor)
         unit = np.median(map_[sure] / (whole * E)[sure]) if way == 2 else 1.0
         inside = np.abs(map_ / unit - whole * E) < 1.96 * s / unit
         for d in DECADES:
             here = sure & (own == d)
             counts[:, way, d] = inside[here].sum(), here.sum()
-            if here.sum() >= LEAST:
+            if here.sum() >= MIN_PIXELS_OF_A_MEDIAN:
                 widths[way, d] = np.median((s / unit)[here] / floor[here])
     errors = raw_errors(shot("linear", 16), E, own, well, read)
     return counts, widths, found_noise, errors, unsure, within(g, true_g, float(noise.rho[0]))
@@ -146,44 +151,46 @@ def raw_errors(taken: Bracket, E: Float, own: NDArray[np.intp], well: float, rea
     """Return by decade how far sum X / sum t errs, over the mean by inverse variance, and z: (2, 6)."""
     g = responses.true_g("linear", 65536)
     whole = float(np.exp(g[-1]))
-    Z, t = taken.images, taken.times
+    Z = taken.images
+    t = taken.times
     map_, s = merge_with_deviation(Z, t, g, well / whole, read)
-    X, shown = np.exp(g)[Z] * (Z > 0), Z < int(0.98 * 65535) + 1
+    X = np.exp(g)[Z] * (Z > 0)
+    shown = Z < int(0.98 * 65535) + 1
     peer = (X * shown).sum(axis=0) / np.maximum((t[:, None, None] * shown).sum(axis=0), 1e-12)
-    found = np.full((2, len(DECADES)), np.nan)
+    errors = np.full((2, len(DECADES)), np.nan)
     for d in DECADES:
         here = np.isfinite(s) & (own == d)
-        if here.sum() >= LEAST:
-            peers, ours = ((one / whole - E)[here] ** 2 for one in (peer, map_))
+        if here.sum() >= MIN_PIXELS_OF_A_MEDIAN:
+            peers = (peer / whole - E)[here] ** 2
+            ours = (map_ / whole - E)[here] ** 2
             more = peers - ours
             z = more.mean() / max(more.std(), 1e-30) * np.sqrt(more.size)
-            found[:, d] = np.sqrt(peers.mean() / ours.mean()), z
-    return found
+            errors[:, d] = np.sqrt(peers.mean() / ours.mean()), z
+    return errors
 
 
 def compared(folder: Path) -> Mapping[str, ArrayLike]:
     """Return inside and width of each way by decade, the noise found, and the errors."""
     exposure, brightness = measured_curves(folder)
     cases = [(i, exposure[i % 201], brightness[i % 201]) for i in range(402)]
-    counts, widths, noise, errors, unsure, levels = (
-        np.array(one) for one in zip(*along(figures, cases, "brackets"), strict=True)
-    )
+    columns = [np.array(values) for values in zip(*along(figures, cases, "brackets"), strict=True)]
+    counts, widths, noise, errors, unsure, levels = columns
     inside, pixels = counts.sum(axis=0)
-    found: dict[str, ArrayLike] = {}
+    summary: dict[str, ArrayLike] = {}
     for k, way in enumerate(WAYS):
-        found[f"inside, {way}"] = 100 * inside[k] / np.maximum(pixels[k], 1)
-        found[f"width, {way}"] = np.nanmedian(widths[:, k], axis=0)
-    found["noise"] = np.quantile(noise, [0.25, 0.5, 0.75])
+        summary[f"inside, {way}"] = 100 * inside[k] / np.maximum(pixels[k], 1)
+        summary[f"width, {way}"] = np.nanmedian(widths[:, k], axis=0)
+    summary["noise"] = np.quantile(noise, [0.25, 0.5, 0.75])
     wrong, all_ = unsure.sum(axis=0)
-    for kind, one in zip(
+    for kind, values in zip(
         ("false alarms", "misses, clipped", "misses, dark"), 100 * wrong / all_, strict=True
     ):
-        found[f"unsure, {kind}"] = one
-    found["levels"] = 100 * levels.mean(axis=0)
+        summary[f"unsure, {kind}"] = values
+    summary["levels"] = 100 * levels.mean(axis=0)
     for d in DECADES:
         ratio, z = errors[:, :, d].T
-        found[f"error, {d} decades below"] = np.nanmedian(ratio), np.nanmin(z)
-    return found
+        summary[f"error, {d} decades below"] = np.nanmedian(ratio), np.nanmin(z)
+    return summary
 
 
 def chi_square(taken: Bracket) -> Iterator[float]:
@@ -191,21 +198,24 @@ def chi_square(taken: Bracket) -> Iterator[float]:
     state = pipeline.measure_deviation(pipeline.assemble(taken))
     if state.s is None:
         raise RuntimeError("the standard deviation was not measured")
-    images, t = state.bracket.images[..., 1], state.bracket.times[:, None, None]
+    images = state.bracket.images[..., 1]
+    t = state.bracket.times[:, None, None]
     noise = estimate_noise(state.bracket.images, t.ravel(), state.g, state.E)
-    g, E = (
-        np.reshape(state.g, (256, -1))[:, min(1, state.g.ndim - 1)],
-        state.E[..., 1].astype(np.float64),
-    )
-    X, N, R, rho = np.exp(g), *(one[1] for one in noise)
-    V, steep = (
-        variance(E * t, np.gradient(X)[images], N, R) / t**2,
-        np.pad(slope(E), 2, constant_values=np.inf),
-    )
+    g = np.reshape(state.g, (256, -1))[:, min(1, state.g.ndim - 1)]
+    E = state.E[..., 1].astype(np.float64)
+    X = np.exp(g)
+    N = noise.N[1]
+    R = noise.R[1]
+    rho = noise.rho[1]
+    V = variance(E * t, np.gradient(X)[images], N, R) / t**2
+    steep = np.pad(slope(E), 2, constant_values=np.inf)
     flat = (steep <= np.quantile(steep, FLAT_FRACTION)) & np.isfinite(state.s[..., 1])
     measured = (images > 0) & (images < int(0.98 * 255) + 1) & flat
     twice = np.count_nonzero(measured, axis=0) > 1
-    measured, x, V, E = measured[:, twice], (X[images] / t)[:, twice], V[:, twice], E[twice]
+    measured = measured[:, twice]
+    x = (X[images] / t)[:, twice]
+    V = V[:, twice]
+    E = E[twice]
     yield scattered(x, V + (rho * E) ** 2, measured)
     for alike in np.array_split(np.argsort(E), GROUP_COUNT):
         share = np.where(measured, x / E, np.nan)[:, alike]
@@ -219,21 +229,23 @@ def scattered(x: Float, V: Float, measured: Mask) -> float:
     """Return the mean over the pixels of sum (x - mean)^2 / V over degrees of freedom, less the farthest."""
     w = np.where(measured, 1 / V, 0)
     mean = (w * x).sum(axis=0) / w.sum(axis=0)
-    each = (w * (x - mean) ** 2).sum(axis=0) / (np.count_nonzero(w, axis=0) - 1)
-    return float(each[each <= np.quantile(each, 0.99)].mean())
+    variance = (w * (x - mean) ** 2).sum(axis=0) / (np.count_nonzero(w, axis=0) - 1)
+    return float(variance[variance <= np.quantile(variance, 0.99)].mean())
 
 
 def explained(folder: Path) -> Mapping[str, ArrayLike]:
     """Return chi-square per degree of freedom of each real bracket."""
-    found: dict[str, ArrayLike] = {}
+    summary: dict[str, ArrayLike] = {}
     for name in BRACKETS:
         suffixes = (".jpg", ".jpeg", ".png")
-        files = tuple(sorted(one for one in real(folder, name).iterdir() if one.suffix in suffixes))
+        files = tuple(
+            sorted(file for file in real(folder, name).iterdir() if file.suffix in suffixes)
+        )
         taken = read_bracket(
             files, "exif", "0000FF" if name == "memorial" else None, None, note=print, detail=print
         )
-        found[f"chi2, {name}"], found[f"chance, {name}"] = chi_square(taken)
-    return found
+        summary[f"chi2, {name}"], summary[f"chance, {name}"] = chi_square(taken)
+    return summary
 
 
 def _true(way: str) -> tuple[Hold, Hold]:

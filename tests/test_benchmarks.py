@@ -48,7 +48,7 @@ RESULTS = {
 
 
 def row(*holds, name="work"):
-    return Row(name, "some work", lambda folder, one: Case({}, {}), holds, "error")
+    return Row(name, "some work", lambda folder, one_thread: Case({}, {}), holds, "error")
 
 
 def test_the_best_peer_is_the_fastest_and_never_hdrlab():
@@ -132,8 +132,8 @@ def test_an_unknown_subject_or_row_is_refused_with_a_list_of_known_ones(argument
     with pytest.raises(SystemExit) as ended:
         command.main(arguments)
     assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert "nothing" in said and known in said
+    errors = capsys.readouterr().err
+    assert "nothing" in errors and known in errors
 
 
 PEERS = (
@@ -209,9 +209,9 @@ def test_an_experiment_is_printed_next_to_the_published_result(
     monkeypatch.setattr(command, "chosen", lambda subject, names: [row])
     figures = tmp_path / "figures.json"
     assert command.main(["papers", "--json", str(figures)]) == code
-    said = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert ["error,", "%", "2.7", "1.5", "<=", str(limit), ("ok", "MISSED")[code]] in said
-    assert ["more", "-", "1,", "2", "-"] in said
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["error,", "%", "2.7", "1.5", "<=", str(limit), ("ok", "MISSED")[code]] in rows
+    assert ["more", "-", "1,", "2", "-"] in rows
     assert json.loads(figures.read_text())["rerun"] == {"error, %": [1.5], "more": [1, 2]}
 
 
@@ -228,8 +228,8 @@ def test_an_experiment_without_data_is_skipped_and_a_broken_one_is_missed(
     ]
     monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
     assert command.main(["papers"]) == code
-    said = capsys.readouterr().out
-    assert reason in said and "1 of 2 holds are met" in said
+    output = capsys.readouterr().out
+    assert reason in output and "1 of 2 holds are met" in output
 
 
 def test_ctrl_c_ends_with_what_is_known_so_far(monkeypatch, capsys):
@@ -239,8 +239,8 @@ def test_ctrl_c_ends_with_what_is_known_so_far(monkeypatch, capsys):
     rows = [experiment(lambda: {"x": 0}, at_most("x", 1)), experiment(interrupted, at_most("x", 1))]
     monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
     assert command.main(["papers"]) == 130
-    said = capsys.readouterr()
-    assert "1 of 1 holds are met" in said.out and "stopped" in said.err
+    output = capsys.readouterr()
+    assert "1 of 1 holds are met" in output.out and "stopped" in output.err
 
 
 def test_the_seed_reaches_the_rows_that_draw_at_random(monkeypatch, capsys):
@@ -381,15 +381,15 @@ def test_data_are_read_from_the_folder_that_is_named_first(tmp_path):
 
 
 def test_everyone_runs_once_to_warm_up_and_once_in_each_of_at_least_five_rounds(monkeypatch):
-    monkeypatch.setattr(measure, "ENOUGH", 0)
+    monkeypatch.setattr(measure, "MIN_SECONDS", 0)
     order = []
     case = Case(
         {who: lambda who=who: order.append(who) for who in "ab"}, {}, lambda who, result: ord(who)
     )
-    found = measure.timed(case)
+    timings = measure.timed(case)
     assert order == ["a", "b"] * 6
-    assert [len(seconds) for seconds in found["seconds"].values()] == [5, 5]
-    assert found["errors"] == {"a": 97, "b": 98}
+    assert [len(seconds) for seconds in timings["seconds"].values()] == [5, 5]
+    assert timings["errors"] == {"a": 97, "b": 98}
 
 
 def test_long_runs_are_repeated_less_and_commands_tell_their_memory_while_they_are_timed(
@@ -398,14 +398,14 @@ def test_long_runs_are_repeated_less_and_commands_tell_their_memory_while_they_a
     monkeypatch.setattr(measure, "LONG_SECONDS", 0)
     order = []
     case = Case({"a": lambda: order.append("a") or Usage(20, 64), "b": lambda: 1}, {})
-    found = measure.timed(case)
+    timings = measure.timed(case)
     assert order == ["a"] * 3
-    assert found["seconds"]["a"] == [20, 20]
-    assert found["megabytes"] == {"a": 64, "b": None}
+    assert timings["seconds"]["a"] == [20, 20]
+    assert timings["megabytes"] == {"a": 64, "b": None}
 
 
 def test_the_floor_is_the_time_to_read_the_input_and_to_write_the_result(monkeypatch):
-    monkeypatch.setattr(measure, "ENOUGH", 0)
+    monkeypatch.setattr(measure, "MIN_SECONDS", 0)
     monkeypatch.setattr(measure, "bandwidth", lambda: 1000.0)
     runs = {"a": lambda: np.zeros(25, np.float32), "b": lambda: (np.zeros(2), [np.zeros(3)])}
     assert measure.timed(Case(runs, {}, reads=400))["floors"] == {"a": 0.5, "b": 0.44}
@@ -416,10 +416,11 @@ def test_the_floor_is_the_time_to_read_the_input_and_to_write_the_result(monkeyp
 
 
 def test_the_floor_of_a_file_is_one_call_by_turns_with_everyone(monkeypatch):
-    monkeypatch.setattr(measure, "ENOUGH", 0)
+    monkeypatch.setattr(measure, "MIN_SECONDS", 0)
     monkeypatch.setattr(measure, "bandwidth", lambda: 1000.0)
     monkeypatch.setattr(measure, "clocked", lambda run: run())
-    order, least = [], iter([9, 2, 4, 3, 7])
+    order = []
+    least = iter([9, 2, 4, 3, 7])
     runs = {"a": lambda: order.append("a") or 1}
     case = Case(runs, {}, least=lambda: order.append("least") or next(least))
     assert measure.timed(case)["floors"] == {"a": 4}
@@ -427,11 +428,11 @@ def test_the_floor_of_a_file_is_one_call_by_turns_with_everyone(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("floor", "said"), [(0.09, "AT FLOOR"), (0.0800, "AT FLOOR"), (0.0799, "MISSED")]
+    ("floor", "message"), [(0.09, "AT FLOOR"), (0.0800, "AT FLOOR"), (0.0799, "MISSED")]
 )
-def test_a_ratio_that_is_missed_within_a_quarter_of_the_floor_is_the_machines(floor, said):
+def test_a_ratio_that_is_missed_within_a_quarter_of_the_floor_is_the_machines(floor, message):
     results = RESULTS | {OURS: RESULTS[OURS]._replace(floor=floor)}
-    assert faster(5).verdict(results) == said
+    assert faster(5).verdict(results) == message
     assert faster(4).verdict(results) == "ok" and close(0.1, "error").verdict(results) == "MISSED"
 
 
@@ -461,14 +462,16 @@ def test_the_peak_is_what_a_run_holds_at_once_beyond_what_the_process_held():
 
 def test_a_command_is_charged_with_its_own_memory_and_not_with_that_of_its_parent():
     held = np.ones(200_000_000, np.uint8)
-    usage = measure.process([sys.executable, "-S", "-c", "x = b'1' * 50_000_000"], one=False)
+    usage = measure.process([sys.executable, "-S", "-c", "x = b'1' * 50_000_000"], one_thread=False)
     assert 50 < usage.megabytes < 120 < held.nbytes / 1e6
     assert usage.seconds > 0
 
 
 def test_a_failed_command_is_reported_with_its_message():
     with pytest.raises(RuntimeError, match="out of film"):
-        measure.process([sys.executable, "-S", "-c", "raise SystemExit('out of film')"], one=False)
+        measure.process(
+            [sys.executable, "-S", "-c", "raise SystemExit('out of film')"], one_thread=False
+        )
 
 
 def test_a_peer_that_is_missing_says_what_to_install(monkeypatch):
@@ -491,7 +494,7 @@ def test_hugin_finds_a_shift_and_a_rotation_about_the_middle_of_an_image():
     taken = align_brackets.shoot_bracket("street", 0.3)
     dark, bright = np.argsort(taken.taken.times)[1:3]
     try:
-        found, has_warning = who.by_hugin(
+        homography, has_warning = who.by_hugin(
             taken.taken.images[[dark, bright]], taken.taken.times[[dark, bright]]
         )
     except peers.Missing as reason:
@@ -499,4 +502,4 @@ def test_hugin_finds_a_shift_and_a_rotation_about_the_middle_of_an_image():
     truth = np.linalg.inv(taken.truth[bright]) @ taken.truth[dark]
     shape = taken.taken.images.shape[1:3]
     assert not has_warning
-    assert warp.corner_distance(found, truth, shape) < 0.5
+    assert warp.corner_distance(homography, truth, shape) < 0.5

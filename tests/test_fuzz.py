@@ -23,12 +23,13 @@ def test_a_file_is_the_same_whenever_its_seed_and_number_are():
         return [mutations.mutated(SEEDS, mutations.generator(seed, "rgbe", k)) for k in range(200)]
 
     assert files(1) == files(1) != files(2)
-    assert len(set(files(1))) > 150 and all(len(one) <= mutations.LARGEST for one in files(1))
+    assert len(set(files(1))) > 150 and all(len(data) <= mutations.LARGEST for data in files(1))
 
 
-@pytest.mark.parametrize("change", mutations.CHANGES, ids=lambda one: one.__name__)
+@pytest.mark.parametrize("change", mutations.CHANGES, ids=lambda mutation: mutation.__name__)
 def test_every_mutation_works_on_any_file_and_changes_most(change):
-    rng, changed = mutations.generator(0, change.__name__, 0), 0
+    rng = mutations.generator(0, change.__name__, 0)
+    changed = 0
     for _ in range(40):
         for seed in (*SEEDS, b"", b"1"):
             data = bytearray(seed)
@@ -39,8 +40,11 @@ def test_every_mutation_works_on_any_file_and_changes_most(change):
 
 def test_a_failing_file_is_minimized_while_it_still_fails():
     data = bytes(3000) + b"bad" + bytes(700) + b"!" + bytes(90)
-    assert minimise.minimised(data, lambda one: b"bad" in one and b"!" in one) == b"bad!"
-    assert len(minimise.minimised(data, lambda one: b"bad" in one, tries=3)) >= 3
+    assert (
+        minimise.minimised(data, lambda candidate: b"bad" in candidate and b"!" in candidate)
+        == b"bad!"
+    )
+    assert len(minimise.minimised(data, lambda candidate: b"bad" in candidate, tries=3)) >= 3
 
 
 def raises(error):
@@ -91,12 +95,12 @@ def test_output_that_bypasses_python_is_a_finding_and_a_clear_error_is_not(tmp_p
 @pytest.mark.skipif(sys.platform != "linux", reason="the limits are those of Linux")
 @pytest.mark.parametrize(("sent", "kind"), [(signal.SIGSTOP, "hang"), (signal.SIGKILL, "crash")])
 def test_a_reader_that_waits_or_dies_is_a_finding_and_is_started_again(sent, kind, monkeypatch):
-    with process.Process(readers.READERS["token"]) as one:
-        assert one.judge(b"x").kind == worker.READ
+    with process.Process(readers.READERS["token"]) as reader_process:
+        assert reader_process.judge(b"x").kind == worker.READ
         monkeypatch.setattr(process, "PATIENCE", 0.3 if kind == "hang" else 60)
-        os.kill(one.child.pid, sent)
-        assert one.judge(b"x").kind == kind
-        assert one.child is None
+        os.kill(reader_process.child.pid, sent)
+        assert reader_process.judge(b"x").kind == kind
+        assert reader_process.child is None
 
 
 @pytest.mark.parametrize("name", [name for name in readers.READERS if name not in DEAR])
@@ -112,8 +116,8 @@ def test_a_damaged_file_is_read_or_refused_in_a_clear_sentence(name, tmp_path, m
         assert worker.outcome(reader, path)[0] == worker.READ
     for number in range(FILES):
         path.write_bytes(mutations.mutated(seeds, mutations.generator(fuzz.SEED, name, number)))
-        kind, said = worker.outcome(reader, path)
-        assert kind in (worker.READ, worker.CLEAN), (number, kind, said[:300])
+        kind, message = worker.outcome(reader, path)
+        assert kind in (worker.READ, worker.CLEAN), (number, kind, message[:300])
 
 
 @pytest.mark.parametrize(
@@ -127,10 +131,10 @@ def test_the_command_prints_a_table_keeps_what_it_finds_and_ends_with_1(
 
     monkeypatch.setattr(fuzz, "fuzz", fuzzed)
     assert command.main(["fuzz", "--reader", "rgbe", "--keep", str(tmp_path)]) == code
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     assert ["rgbe", "1,000", "600", "7", str(400 - code), str(code), "500"] in [
-        one.split() for one in said.splitlines()
+        line.split() for line in output.splitlines()
     ]
-    assert f"1,000 files, {code} findings" in said and ("KeyError" in said) is bool(code)
-    kept = sorted(one.name for one in tmp_path.iterdir())
+    assert f"1,000 files, {code} findings" in output and ("KeyError" in output) is bool(code)
+    kept = sorted(line.name for line in tmp_path.iterdir())
     assert kept == ([f"rgbe-{fuzz.SEED}-3.hdr", f"rgbe-{fuzz.SEED}-3.hdr.txt"] if code else [])

@@ -45,13 +45,13 @@ def test_it_doubles():
 
 
 def test_every_operator_number_and_condition_is_changed_but_words_types_and_refusals_are_not():
-    said = {one.said.partition(": ")[2] for one in mutants("toy.py", SOURCE)}
-    assert said == CHANGES
+    changes = {mutant.said.partition(": ")[2] for mutant in mutants("toy.py", SOURCE)}
+    assert changes == CHANGES
 
 
 def test_the_length_that_a_reshape_finds_becomes_another_but_no_other_number_below_0():
-    assert [one.new for one in mutants("toy.py", "a.reshape(3, -1)")] == ["pass", "4", "(1)"]
-    assert [one.new for one in mutants("toy.py", "a[-1]")] == ["(1)", "2"]
+    assert [mutant.new for mutant in mutants("toy.py", "a.reshape(3, -1)")] == ["pass", "4", "(1)"]
+    assert [mutant.new for mutant in mutants("toy.py", "a[-1]")] == ["(1)", "2"]
     a = np.arange(6)
     assert a.reshape(3, -1).tolist() == a.reshape(3, -2).tolist()
 
@@ -61,13 +61,14 @@ def test_the_length_that_a_reshape_finds_becomes_another_but_no_other_number_bel
 )
 def test_a_mutant_is_python_and_differs_in_one_place(file):
     text = (ROOT / file).read_text(encoding="utf8")
-    found, whole = mutants(file, text), ast.dump(ast.parse(text))
-    assert len(found) > 20
-    for one in found:
-        changed = one.applied(text)
+    all_mutants = mutants(file, text)
+    whole = ast.dump(ast.parse(text))
+    assert len(all_mutants) > 20
+    for mutant in all_mutants:
+        changed = mutant.applied(text)
         assert ast.dump(ast.parse(changed)) != whole
-        assert changed.replace(one.new, "", 1) != changed
-        assert len(changed) - len(text) == len(one.new) - len(one.old)
+        assert changed.replace(mutant.new, "", 1) != changed
+        assert len(changed) - len(text) == len(mutant.new) - len(mutant.old)
 
 
 @pytest.fixture
@@ -88,10 +89,10 @@ def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_
     tests = ["test_toy.py::test_it_doubles"]
     assert forked.run(tests, 60) == 0
     codes = {}
-    for one in mutants("toy.py", SOURCE)[3:]:
-        with forked.changed(one):
-            codes[one.said.partition(": ")[2]] = forked.run(tests, 60)
-    seen = {said for said, code in codes.items() if code}
+    for mutant in mutants("toy.py", SOURCE)[3:]:
+        with forked.changed(mutant):
+            codes[mutant.said.partition(": ")[2]] = forked.run(tests, 60)
+    seen = {message for message, code in codes.items() if code}
     assert seen == {"x * 2 -> (x / 2)", "2 -> 3", "x is None -> (x is not None)", TURNED_ROUND}
     assert (forked.tree / "toy.py").read_text() == SOURCE
     (forked.tree / "toy.py").write_text("while True:\n    pass\n")

@@ -24,7 +24,7 @@ ANY = -np.inf
 WAYS = who.HDRLAB | who.PEERS
 
 
-def told(name: str, kind: str, i: int) -> tuple[float, bool]:
+def measure_case(name: str, kind: str, i: int) -> tuple[float, bool]:
     """Return the error of one who registers case i, and whether the answer is doubted."""
     case = cases.KINDS[kind](i)
     move, doubted = WAYS[name](case.images, case.times)
@@ -36,10 +36,10 @@ def told(name: str, kind: str, i: int) -> tuple[float, bool]:
 def answers(name: str, kind: str, count: int = COUNT) -> tuple[ArrayLike, ArrayLike]:
     """Return errors (count,) and doubts (count,)."""
     try:
-        told(name, kind, 0)
+        measure_case(name, kind, 0)
     except peers.Missing as reason:
         raise Skipped(str(reason)) from None
-    both = along(partial(told, name, kind), range(count), f"{name}, {kind}")
+    both = along(partial(measure_case, name, kind), range(count), f"{name}, {kind}")
     errors, doubted = zip(*both, strict=True)
     return np.array(errors), np.array(doubted)
 
@@ -48,12 +48,12 @@ def accuracy(
     _: Path, *, kind: str, names: tuple[str, ...], count: int = COUNT
 ) -> Mapping[str, ArrayLike]:
     """Return of each the share within the limit, %, the median and 95 % of the errors, pixels."""
-    found: dict[str, ArrayLike] = {}
+    summary: dict[str, ArrayLike] = {}
     for name in names:
         errors = np.asarray(answers(name, kind, count)[0])
         right = 100 * np.mean(errors <= WITHIN[kind])
-        found[name] = np.array([right, *np.quantile(errors, (0.5, 0.95))])
-    return found
+        summary[name] = np.array([right, *np.quantile(errors, (0.5, 0.95))])
+    return summary
 
 
 def share(doubted: Array, among: Array, none: float) -> Array:
@@ -65,16 +65,16 @@ def share(doubted: Array, among: Array, none: float) -> Array:
 
 def flagged(_: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLike]:
     """Return of each class the share of failures that is told, %, and how many there are."""
-    found: dict[str, ArrayLike] = {}
+    summary: dict[str, ArrayLike] = {}
     for kind in ("rotation", "motion", "high frequency"):
         errors, doubted = map(np.asarray, answers(name, kind, count))
         failed = errors > FAILED
-        found[kind] = share(doubted, failed, 100.0)
+        summary[kind] = share(doubted, failed, 100.0)
     for kind in WITHIN:  # the price of caution
         errors, doubted = map(np.asarray, answers(name, kind, count))
         right = errors <= FAILED
-        found[f"{kind}: of the right answers doubted"] = share(doubted, right, 0.0)
-    return found
+        summary[f"{kind}: of the right answers doubted"] = share(doubted, right, 0.0)
+    return summary
 
 
 def beside(kind: str, title: str) -> tuple[Experiment, ...]:

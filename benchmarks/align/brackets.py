@@ -118,14 +118,14 @@ def shoot_bracket(
     return HandheldBracket(degrees=degrees, taken=taken, truth=truth)
 
 
-def misregistration(bracket: HandheldBracket, found: F64) -> float:
+def misregistration(bracket: HandheldBracket, homographies: F64) -> float:
     """Return the misregistration of the worst pair, in pixels."""
     height, width = bracket.taken.images.shape[1:3]
     y, x = np.mgrid[0 : height - 1 : GRID_POINTS * 1j, 0 : width - 1 : GRID_POINTS * 1j]
     points = np.stack([x.ravel(), y.ravel()], axis=-1)
     errors = []
     for moving, fixed in pairwise(by_brightness(bracket.taken.images)):
-        own = np.linalg.inv(found[fixed]) @ found[moving]
+        own = np.linalg.inv(homographies[fixed]) @ homographies[moving]
         true = np.linalg.inv(bracket.truth[fixed]) @ bracket.truth[moving]
         off = warp.apply(own, points) - warp.apply(true, points)
         errors.append(np.quantile(np.hypot(off[:, 0], off[:, 1]), 0.95))

@@ -22,8 +22,11 @@ from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.filters import warp
 
 SHAPE = (340, 480)
-RADIUS, DEGREES = 32, 3.0  # pixels and degrees: as far as a hand shakes between two photographs
-FULL_WELL, READ_NOISE = 20_000.0, 5.0
+# pixels and degrees: as far as a hand shakes between two photographs
+RADIUS = 32
+DEGREES = 3.0
+FULL_WELL = 20_000.0
+READ_NOISE = 5.0
 SUBJECTS = ("chapel", "street", "workshop", "astronaut", "coffee", "rocket")
 Float = NDArray[np.float64]
 
@@ -45,7 +48,8 @@ def subject(name: str) -> NDArray[np.float32]:
     grown = zoom(
         texture, (*(1.01 * n / m for n, m in zip(SHAPE, texture.shape, strict=False)), 1), order=1
     )
-    y, x = (np.linspace(-0.5, 0.5, n) for n in SHAPE)
+    y = np.linspace(-0.5, 0.5, SHAPE[0])
+    x = np.linspace(-0.5, 0.5, SHAPE[1])
     light = 0.5 * y[:, None, None] + 0.3 * x[None, :, None]
     return np.asarray(10 ** (2.2 * grown[: SHAPE[0], : SHAPE[1]] + light), np.float32)
 
@@ -103,17 +107,18 @@ def moving(i: int) -> Case:
         return pair(i, E, away(far), rng)
     other = subject(SUBJECTS[(i // 2 + 1 + rng.integers(5)) % 6])
     other = other * np.float32(np.median(E) / np.median(other))
-    strip, dark = int(rng.uniform(0.05, 0.3) * SHAPE[1]), rng.spawn(1)[0]
+    strip = int(rng.uniform(0.05, 0.3) * SHAPE[1])
+    dark = rng.spawn(1)[0]
     moved = np.where(np.arange(SHAPE[1])[:, None] < strip, E, other)
     times = camera.times_around(E, 2, stops=rng.uniform(1, 3))
     both = [
         camera.shoot(
-            one,
+            light,
             [t],
             camera.Camera(full_well=FULL_WELL, read_noise=READ_NOISE, response="film"),
             rng=dark,
         ).images[0]
-        for one, t in zip((moved, E), times, strict=True)
+        for light, t in zip((moved, E), times, strict=True)
     ]
     return Case(np.stack(both), times, None)
 
@@ -125,7 +130,8 @@ def fine(i: int) -> Case:
     is a truth, but a photograph does not tell it.
     """
     rng = np.random.default_rng((5, i))
-    stops, moves = rng.uniform(1, 3), away(rng.integers(-RADIUS, RADIUS, 2))
+    stops = rng.uniform(1, 3)
+    moves = away(rng.integers(-RADIUS, RADIUS, 2))
     y, x = np.indices(SHAPE)
     if i % 3:
         period = rng.integers(3, 13)
@@ -134,7 +140,10 @@ def fine(i: int) -> Case:
         )
         return pair(i, _scene(pattern), moves, rng, stops)
     leaves = [gaussian_filter(rng.standard_normal(SHAPE), rng.uniform(0.5, 1.5)) for _ in range(2)]
-    both = [pair(i, _scene(one / one.std()), moves * 0 + np.eye(3), rng, stops) for one in leaves]
+    both = [
+        pair(i, _scene(texture / texture.std()), moves * 0 + np.eye(3), rng, stops)
+        for texture in leaves
+    ]
     return Case(np.stack([both[0].images[0], both[1].images[1]]), both[0].times, None)
 
 

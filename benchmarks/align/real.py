@@ -32,7 +32,8 @@ from hdrlab.io.album import photographs
 from hdrlab.io.photos import read_bracket, read_photo
 
 WELL = (30, 225)  # levels between which a photograph shows an edge as it is
-SHARE = 0.02  # of the pixels two photographs must measure well to be compared
+# fraction of the pixels that two photos must measure well to be compared
+MIN_MEASURED_FRACTION = 0.02
 HALF = 2  # the photographs are halved: the light of each 2 x 2 pixels
 
 
@@ -60,7 +61,9 @@ def crusader(folder: Path) -> Bracket:
 
 def smaller(images: Array) -> Array:
     """Return photographs at half the size."""
-    n, h, w = images.shape[0], images.shape[1] // HALF, images.shape[2] // HALF
+    n = images.shape[0]
+    h = images.shape[1] // HALF
+    w = images.shape[2] // HALF
     blocks = images[:, : HALF * h, : HALF * w].reshape(n, h, HALF, w, HALF, 3)
     return (blocks.mean(axis=(2, 4)) + 0.5).astype(images.dtype)
 
@@ -73,26 +76,24 @@ def sharpness(X: Array, seen: NDArray[np.bool_]) -> float:
 
 def beside_the_sharpest(taken: Bracket, align: str) -> float:
     """Return the map's S / that of the photograph beside which it is lowest, over what both measure well."""
-    found = pipeline.assemble(taken, align=align)
-    rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
-    size, first = (
-        (rows.stop - rows.start, columns.stop - columns.start),
-        [[rows.start, columns.start]],
-    )
-    back = np.linalg.inv(found.homographies) @ warp.as_homographies(first)
+    assembly = pipeline.assemble(taken, align=align)
+    rows, columns = warp.common_rectangle(assembly.homographies, taken.images.shape[1:3])
+    size = (rows.stop - rows.start, columns.stop - columns.start)
+    first = [[rows.start, columns.start]]
+    back = np.linalg.inv(assembly.homographies) @ warp.as_homographies(first)
     Z = [
-        warp.nearest(one[..., 1].astype(float), H, size)
-        for one, H in zip(taken.images, back, strict=True)
+        warp.nearest(frame[..., 1].astype(float), H, size)
+        for frame, H in zip(taken.images, back, strict=True)
     ]
-    g = found.g if found.g.ndim == 1 else found.g[:, 1]
+    g = assembly.g if assembly.g.ndim == 1 else assembly.g[:, 1]
     own = by_brightness(taken.images)[len(Z) // 2 - 1 + len(Z) % 2]
-    well = [binary_erosion((one > WELL[0]) & (one < WELL[1]), iterations=2) for one in Z]
+    well = [binary_erosion((frame > WELL[0]) & (frame < WELL[1]), iterations=2) for frame in Z]
     shares = []
-    for one, seen in zip(Z, well, strict=True):
+    for frame, seen in zip(Z, well, strict=True):
         both = seen & well[own]
-        if both.mean() > SHARE:
+        if both.mean() > MIN_MEASURED_FRACTION:
             shares.append(
-                sharpness(found.E[..., 1], both) / sharpness(np.exp(g[one.astype(int)]), both)
+                sharpness(assembly.E[..., 1], both) / sharpness(np.exp(g[frame.astype(int)]), both)
             )
     return min(shares)
 
@@ -100,11 +101,11 @@ def beside_the_sharpest(taken: Bracket, align: str) -> float:
 def compared(folder: Path, *, which: str) -> Mapping[str, ArrayLike]:
     """Return the sharpness of the map beside its sharpest photograph, for each way to align."""
     taken = {"arch": arch, "crusader": crusader}[which](folder)
-    found = {
+    errors = {
         way: beside_the_sharpest(taken, way)
         for way in ("none", "mtb", "cerman", "homography", "auto")
     }
-    return found | {GAIN: max(found[way] for way in found if way != "none") / found["none"]}
+    return errors | {GAIN: max(errors[way] for way in errors if way != "none") / errors["none"]}
 
 
 GAIN = "the sharpest of the others / none"

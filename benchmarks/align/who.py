@@ -41,26 +41,26 @@ def shifted(offset: ArrayLike) -> Float:
 
 def by_mtb(images: Array, _: Float) -> Answer:
     """Answer by bitmaps."""
-    (found,) = register(images, "mtb").pairs
-    return found.H, not found.reliable
+    (pair,) = register(images, "mtb").pairs
+    return pair.H, not pair.reliable
 
 
 def by_light(images: Array, times: Float) -> Answer:
     """Answer by correlation and simplex, the response known."""
-    (found,) = register(images, "cerman", times=times, g=true_g("film")).pairs
-    return found.H, not found.reliable
+    (pair,) = register(images, "cerman", times=times, g=true_g("film")).pairs
+    return pair.H, not pair.reliable
 
 
 def by_histograms(images: Array, _: Float) -> Answer:
     """Answer by correlation and simplex, neither response nor times known."""
-    (found,) = register(images, "cerman").pairs
-    return found.H, not found.reliable
+    (pair,) = register(images, "cerman").pairs
+    return pair.H, not pair.reliable
 
 
 def by_points(images: Array, _: Float) -> Answer:
     """Answer by a homography, neither response nor times known."""
-    (found,) = register(images, "homography").pairs
-    return found.H, not found.reliable
+    (pair,) = register(images, "homography").pairs
+    return pair.H, not pair.reliable
 
 
 def by_opencv(images: Array, _: Float) -> Answer:
@@ -83,7 +83,8 @@ def by_hugin(images: Array, _: Float) -> Answer:
         raise peers.Missing(f"no {missing[0]} on the path (apt install hugin-tools)")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        project, files = folder / "stack.pto", [folder / "bright.tif", folder / "dark.tif"]
+        project = folder / "stack.pto"
+        files = [folder / "bright.tif", folder / "dark.tif"]
         for path, image in zip(files, images[::-1], strict=True):
             iio.imwrite(path, image)
         command = [HUGIN, *HUGIN_OPTIONS, "-p", str(project), *map(str, files)]

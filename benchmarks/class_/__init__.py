@@ -35,11 +35,14 @@ from hdrlab.course.plan import GradingOptions
 from hdrlab.course.students import roster as lists
 from hdrlab.course.submissions import class_folder
 
-COUNT, SCALE = 300, 24
-PROCESSES, WORKERS = (1, 2), (1, 2, 4)
+COUNT = 300
+SCALE = 24
+PROCESSES = (1, 2)
+WORKERS = (1, 2, 4)
 HONEST = 60  # among all that is hostile
 # seconds of a processor, and by the clock, that one submission may cost
-CPU, CLOCK = 60, 300
+CPU = 60
+CLOCK = 300
 FIGURES = {
     "CPU seconds": attrgetter("cpu"),
     "seconds": attrgetter("seconds"),
@@ -52,45 +55,49 @@ LARGE = f"{judged.LARGE // 1000} 000"
 def whole(folder: Path, count: int = COUNT) -> dict[str, Any]:
     """Return the figures of a whole class, with the hostile ones and without them."""
     target = folder / "with"
-    each = handed.handed(count, target / "results")
-    others = [one for one in each if not one.hostile]
-    first = grade(handed.write(folder / "class", each), target, "--jobs", "2")
+    members = handed.handed(count, target / "results")
+    others = [member for member in members if not member.hostile]
+    first = grade(handed.write(folder / "class", members), target, "--jobs", "2")
     second = grade(handed.write(folder / "others", others), folder / "without", "--jobs", "2")
     graded = judged.read(target)
     number, size = judged.size(target)
     return {
-        "submissions, and those that are not hostile": (len(each), len(others)),
-        "submissions lost": judged.lost(graded, each),
+        "submissions, and those that are not hostile": (len(members), len(others)),
+        "submissions lost": judged.lost(graded, members),
         "files of others that differ": judged.differing(target, folder / "without", others),
-        "most points of the hostile": judged.gained(graded, each),
-        "right ones below all points": judged.not_whole(graded, each),
-        "mistakes not named, %": judged.not_named(graded, each),
-        "traps not refused in a line": judged.not_refused(graded, each),
+        "most points of the hostile": judged.gained(graded, members),
+        "right ones below all points": judged.not_whole(graded, members),
+        "mistakes not named, %": judged.not_named(graded, members),
+        "traps not refused in a line": judged.not_refused(graded, members),
         "minutes, with the hostile and without": (first.seconds / 60, second.seconds / 60),
-        "CPU seconds of one, with and without": (first.cpu / len(each), second.cpu / len(others)),
+        "CPU seconds of one, with and without": (
+            first.cpu / len(members),
+            second.cpu / len(others),
+        ),
         "MB at most, together and of one process": (first.total, first.largest),
         "kB of one: handed in, its result, all its files": (
-            sum(len(one.data) for one in each) / len(each) / 1e3,
-            judged.results_size(target) / len(each) / 1e3,
-            size / len(each) / 1e3,
+            sum(len(member.data) for member in members) / len(members) / 1e3,
+            judged.results_size(target) / len(members) / 1e3,
+            size / len(members) / 1e3,
         ),
-        f"core-hours of {LARGE}": judged.core_hours(first, len(each)),
+        f"core-hours of {LARGE}": judged.core_hours(first, len(members)),
         f"hours of {LARGE} on {_listed(judged.WORKERS)} processors": [
-            judged.core_hours(first, len(each)) / workers for workers in judged.WORKERS
+            judged.core_hours(first, len(members)) / workers for workers in judged.WORKERS
         ],
         f"GB and thousands of files of {LARGE}": (
-            size / len(each) * judged.LARGE / 1e9,
-            number / len(each) * judged.LARGE / 1e3,
+            size / len(members) * judged.LARGE / 1e9,
+            number / len(members) * judged.LARGE / 1e3,
         ),
     }
 
 
 def processes(folder: Path, count: int = SCALE) -> dict[str, Any]:
     """Return how a class is graded by one process, and by two."""
-    each = handed.handed(count, folder := folder / "processes")
-    place = handed.write(folder / "class", each)
+    folder = folder / "processes"
+    members = handed.handed(count, folder)
+    place = handed.write(folder / "class", members)
     used = {jobs: grade(place, folder / f"by{jobs}", "--jobs", str(jobs)) for jobs in PROCESSES}
-    differ = judged.differing(folder / "by1", folder / "by2", each)
+    differ = judged.differing(folder / "by1", folder / "by2", members)
     return _scaling(list(used.values()), count, "processes", PROCESSES) | {
         "files that differ": differ
     }
@@ -98,29 +105,33 @@ def processes(folder: Path, count: int = SCALE) -> dict[str, Any]:
 
 def workers(folder: Path, count: int = SCALE) -> dict[str, Any]:
     """Return how a class is graded by one, two and four workers."""
-    each = handed.handed(count, folder := folder / "workers")
-    place = handed.write(folder / "class", each)
+    folder = folder / "workers"
+    members = handed.handed(count, folder)
+    place = handed.write(folder / "class", members)
     used = []
     for number in WORKERS:
         with cluster(folder / f"cluster{number}", number) as (address, beside):
             used.append(grade(place, folder / f"by{number}", "--cluster", address, beside=beside))
-    first, *rest = (folder / f"by{number}" for number in WORKERS)
-    differ = sum(judged.differing(first, other, each) for other in rest)
+    folders = [folder / f"by{number}" for number in WORKERS]
+    differ = sum(judged.differing(folders[0], other, members) for other in folders[1:])
     return _scaling(used, count, "workers", WORKERS) | {"files that differ": differ}
 
 
 def _scaling(used: list[Used], count: int, what: str, numbers: tuple[int, ...]) -> dict[str, Any]:
     """Return the figures of the same class, graded by more and more."""
-    by, last = f"{_listed(numbers)} {what}", used[-1]
+    by = f"{_listed(numbers)} {what}"
+    last = used[-1]
     return {
-        f"seconds by {by}": [one.seconds for one in used],
+        f"seconds by {by}": [run_result.seconds for run_result in used],
         f"times as fast by {_listed(numbers[1:])}": [
-            used[0].seconds / one.seconds for one in used[1:]
+            used[0].seconds / run_result.seconds for run_result in used[1:]
         ],
         f"processors kept busy by {numbers[-1]} {what}": last.cpu / last.seconds,
-        f"CPU seconds of one by {by}": [one.cpu / count for one in used],
-        f"ms of one in the command's own process by {by}": [1e3 * one.own / count for one in used],
-        f"MB at most by {by}": [one.total for one in used],
+        f"CPU seconds of one by {by}": [run_result.cpu / count for run_result in used],
+        f"ms of one in the command's own process by {by}": [
+            1e3 * run_result.own / count for run_result in used
+        ],
+        f"MB at most by {by}": [run_result.total for run_result in used],
         "processors": os.cpu_count() or 1,
     }
 
@@ -129,37 +140,44 @@ def among_hostile(folder: Path, count: int = HONEST) -> dict[str, Any]:
     """Return how a class fares that has every kind of hostile hand-in among its own."""
     folder = folder / "mixed"  # others have written into it
     target = folder / "with"
-    each = mixed.honest(count, target / "results")
-    others = mixed.hostile(target / "results", each[0])
-    used = grade(mixed.write(folder / "class", each, others), target, "--jobs", "2")
-    grade(handed.write(folder / "honest", each), folder / "without", "--jobs", "2")
+    members = mixed.honest(count, target / "results")
+    others = mixed.hostile(target / "results", members[0])
+    used = grade(mixed.write(folder / "class", members, others), target, "--jobs", "2")
+    grade(handed.write(folder / "honest", members), folder / "without", "--jobs", "2")
     return {
-        "submissions, honest and hostile": (len(each), len(others)),
-        **{f"of kind {kind}": count for kind, count in Counter(one.kind for one in others).items()},
-        "files of the honest that differ": judged.differing(target, folder / "without", each),
-        "honest ones lost": judged.lost(judged.read(target), each),
+        "submissions, honest and hostile": (len(members), len(others)),
+        **{
+            f"of kind {kind}": count
+            for kind, count in Counter(run_result.kind for run_result in others).items()
+        },
+        "files of the honest that differ": judged.differing(target, folder / "without", members),
+        "honest ones lost": judged.lost(judged.read(target), members),
         "hostile ones of whom nothing is said": len(mixed.untold(target, others)),
         "minutes": used.seconds / 60,
-        "CPU seconds of one": used.cpu / (len(each) + len(others)),
+        "CPU seconds of one": used.cpu / (len(members) + len(others)),
         "MB at most, together and of one process": (used.total, used.largest),
     }
 
 
 def most_costly(folder: Path) -> dict[str, Any]:
     """Return what the worst submission of each kind costs, and which one it is."""
-    each = list(costs.each())
-    used = along(partial(costs.cost, folder / "costs"), range(len(each)), "costs")
-    found: dict[str, Any] = {
-        "CPU seconds of the worst": max(one.cpu for one in used),
-        "seconds of the worst": max(one.seconds for one in used),
-        "MB of the worst": max(one.largest for one in used),
+    submissions = list(costs.costly_submissions())
+    used = along(partial(costs.cost, folder / "costs"), range(len(submissions)), "costs")
+    costs_found: dict[str, Any] = {
+        "CPU seconds of the worst": max(submission.cpu for submission in used),
+        "seconds of the worst": max(submission.seconds for submission in used),
+        "MB of the worst": max(submission.largest for submission in used),
     }
-    for kind in dict.fromkeys(one.kind for one in each):
-        mine = [(one, what) for one, what in zip(used, each, strict=True) if what.kind == kind]
+    for kind in dict.fromkeys(submission.kind for submission in submissions):
+        mine = [
+            (submission, what)
+            for submission, what in zip(used, submissions, strict=True)
+            if what.kind == kind
+        ]
         for name, figure in FIGURES.items():
-            value, which = max((figure(one), what.which) for one, what in mine)
-            found[f"{kind}, {name}: {which}"] = value
-    return found
+            value, which = max((figure(submission), what.which) for submission, what in mine)
+            costs_found[f"{kind}, {name}: {which}"] = value
+    return costs_found
 
 
 def books(folder: Path) -> dict[str, Any]:
@@ -169,29 +187,29 @@ def books(folder: Path) -> dict[str, Any]:
     grade(place, folder / "graded")
     (result,) = judged.read(folder / "graded").values()
     used = [_told(folder / str(count), right, result, count) for count in BOOKS]
-    seconds = [one.own for one in used]
+    seconds = [run_result.own for run_result in used]
     return {
         f"CPU seconds of the command's own process for {_listed(BOOKS)} results": seconds,
         "power of the class that they grow with": log(seconds[1] / seconds[0])
         / log(BOOKS[1] / BOOKS[0]),
         "ms of one": 1e3 * (seconds[1] - seconds[0]) / (BOOKS[1] - BOOKS[0]),
         f"minutes of {LARGE}": seconds[1] / BOOKS[1] * judged.LARGE / 60,
-        f"MB for {_listed(BOOKS)} results": [one.total for one in used],
+        f"MB for {_listed(BOOKS)} results": [run_result.total for run_result in used],
     }
 
 
-def _told(folder: Path, one: handed.Handed, result: results.Result, count: int) -> Used:
+def _told(folder: Path, member: handed.Handed, result: results.Result, count: int) -> Used:
     """Return what the command takes where everybody has handed in the same, and has a result."""
-    each = [
-        one._replace(team=f"s{k:05d}", students=(f"s{k:05d}",), file=f"s{k:05d}_hw2.ipynb")
+    members = [
+        member._replace(team=f"s{k:05d}", students=(f"s{k:05d}",), file=f"s{k:05d}_hw2.ipynb")
         for k in range(count)
     ]
-    place = handed.write(folder / "class", each)
+    place = handed.write(folder / "class", members)
     homework = plan.read().homeworks["hw2"]
     conditions = GradingOptions(secret=handed.SECRET.strip(), timeout=float(TIMEOUT))
-    found = class_folder.find(place / "submissions", lists.read(place / "roster.csv"))
+    member_result = class_folder.find(place / "submissions", lists.read(place / "roster.csv"))
     (folder / "out" / "results").mkdir(parents=True)
-    for piece in classroom.make_jobs(found.submissions, homework, conditions):
+    for piece in classroom.make_jobs(member_result.submissions, homework, conditions):
         data = results.to_json(replace(result, student=piece.owner))
         jobs.result_path(folder / "out" / "results", piece).write_bytes(data)
     return grade(place, folder / "out")

@@ -53,7 +53,7 @@ class Costly(NamedTuple):
     data: Callable[[], bytes]
 
 
-def each() -> Iterator[Costly]:
+def costly_submissions() -> Iterator[Costly]:
     """Yield all of them."""
     for name, body in CODE.items():
         yield Costly("code", name, ".py", partial(_source, body))
@@ -92,7 +92,7 @@ def _archive(source: bytes, size: int = SLOW) -> bytes:
 
 def cost(folder: Path, number: int) -> Used:
     """Return what it takes to grade a class of one submission alone, by its number in `each`."""
-    kind, which, ending, data = list(each())[number]
+    kind, which, ending, data = list(costly_submissions())[number]
     made = Handed("s000", ("s000",), f"s000_hw2{ending}", data(), 0.0, kind, which)
     place = folder / str(number)
     return grade(handed.write(place / "class", [made]), place / "out", "--jobs", "1")

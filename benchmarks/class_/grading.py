@@ -73,29 +73,37 @@ def grade(folder: Path, out: Path, *words: str, beside: Sequence[int] = ()) -> U
 def watched(command: Sequence[str], beside: Sequence[int] = ()) -> Used:
     """Return what a command took, with all that it started, and what it made others do that were there."""
     env = os.environ | dict.fromkeys(THREADS, "1")
-    before = sum(_cpu(one, 4) for root in beside for one in tree(root))
-    began, own, total, largest = time.perf_counter(), 0.0, 0.0, 0.0
+    before = sum(_cpu(child_process, 4) for root in beside for child_process in tree(root))
+    began = time.perf_counter()
+    own = 0.0
+    total = 0.0
+    largest = 0.0
     with subprocess.Popen(
         command, cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     ) as process:
         assert process.stderr is not None
         os.set_blocking(process.stderr.fileno(), False)
-        said = b""
+        output = b""
         while True:
             ended, status, usage = os.wait4(process.pid, os.WNOHANG)
             if ended:
                 break
-            said = (said + (process.stderr.read() or b""))[-4000:]
+            output = (output + (process.stderr.read() or b""))[-4000:]
             own = max(own, _cpu(process.pid, 2))
-            held = [_megabytes(one) for root in (process.pid, *beside) for one in tree(root)]
-            total, largest = max(total, sum(held)), max(largest, max(held, default=0.0))
+            held = [
+                _megabytes(child_process)
+                for root in (process.pid, *beside)
+                for child_process in tree(root)
+            ]
+            total = max(total, sum(held))
+            largest = max(largest, max(held, default=0.0))
             time.sleep(TICK)
         seconds = time.perf_counter() - began
         process.returncode = os.waitstatus_to_exitcode(status)
-        said += process.stderr.read() or b""
+        output += process.stderr.read() or b""
     if process.returncode:
-        raise RuntimeError(said.decode(errors="replace").strip()[-2000:])
-    others = sum(_cpu(one, 4) for root in beside for one in tree(root)) - before
+        raise RuntimeError(output.decode(errors="replace").strip()[-2000:])
+    others = sum(_cpu(child_process, 4) for root in beside for child_process in tree(root)) - before
     return Used(seconds, usage.ru_utime + usage.ru_stime + others, own, total, largest)
 
 
@@ -107,9 +115,9 @@ def tree(root: int) -> Iterator[int]:
             children.setdefault(int(_stat(int(entry.name))[1]), []).append(int(entry.name))
     waiting = [root]
     while waiting:
-        one = waiting.pop()
-        yield one
-        waiting += children.get(one, [])
+        process = waiting.pop()
+        yield process
+        waiting += children.get(process, [])
 
 
 def _stat(process: int) -> list[str]:

@@ -102,7 +102,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         ways = sorted((TESTS / "equivalent").glob("hw2_*.py"))
         return [(way.stem, ".py", way.read_bytes()) for way in islice(cycle(ways), count)]
     if kind == "mistake":
-        names = [one.name for one in misconceptions.known() if one.task in ids]
+        names = [mistake.name for mistake in misconceptions.known() if mistake.task in ids]
         return [(name, ".ipynb", _mistaken(name)) for name in islice(cycle(names), count)]
     if kind == "half":
         some = [
@@ -111,13 +111,13 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         return [(part.tasks[-1].id, ".ipynb", _filled(homework, part)) for part in some]
     if kind == "blank":
         blank = solutions.notebook(homework).encode()
-        each = [
+        members = [
             ("handout", blank),
             ("cut short", blank[:3000]),
             ("no notebook", b"hello"),
             ("empty", b""),
         ]
-        return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
+        return [(which, ".ipynb", data) for which, data in islice(cycle(members), count)]
     if kind == "attack":
         attacks = tests("attack_fixtures")
         aims = zip(islice(cycle(attacks.ATTACK_NAMES), count), cycle(ids), strict=False)
@@ -133,10 +133,8 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
 
 def _right(homework: Homework) -> list[Made]:
     cells = solutions.texts(homework)
-    notebook, script = (
-        solutions.notebook(homework, cells).encode(),
-        solutions.script(cells).encode(),
-    )
+    notebook = solutions.notebook(homework, cells).encode()
+    script = solutions.script(cells).encode()
     archive = make_zip({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
     return [
         ("notebook", ".ipynb", notebook),
@@ -182,18 +180,19 @@ def tests(name: str) -> ModuleType:
     return module
 
 
-def write(folder: Path, each: Iterable[Handed]) -> Path:
+def write(folder: Path, members: Iterable[Handed]) -> Path:
     """Write what was handed in, the roster, the times and the secret into a folder, and return it."""
     (folder / "submissions").mkdir(parents=True)
     text_of_plan = term.move(plan.PLAN.read_text(encoding="utf8"), toy_class.FIRST_DAY)
     (folder / "plan.toml").write_text(text_of_plan, encoding="utf8")
     due = plan.read(folder / "plan.toml").homeworks["hw2"].due
     assert isinstance(due, datetime)
-    students, times = [], []
-    for one in each:
-        (folder / "submissions" / one.file).write_bytes(one.data)
-        students += [(who, f"Student {who}", one.team) for who in one.students]
-        times.append((one.file, (due + timedelta(hours=one.hours)).isoformat()))
+    students = []
+    times = []
+    for member in members:
+        (folder / "submissions" / member.file).write_bytes(member.data)
+        students += [(who, f"Student {who}", member.team) for who in member.students]
+        times.append((member.file, (due + timedelta(hours=member.hours)).isoformat()))
     csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), students)
     csv_tables.write_csv(folder / "received.csv", ("file", "received"), times)
     (folder / "secret.txt").write_text(SECRET)

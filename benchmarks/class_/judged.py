@@ -17,76 +17,91 @@ WORKERS = (16, 64, 256)
 
 def read(out: Path) -> dict[str, Result]:
     """Return the results of a run, by team."""
-    found = (results.from_json(file.read_bytes()) for file in (out / "results").glob("*.json"))
-    return {result.student: result for result in found}
+    results_read = (
+        results.from_json(file.read_bytes()) for file in (out / "results").glob("*.json")
+    )
+    return {result.student: result for result in results_read}
 
 
-def files(out: Path, one: Handed) -> dict[str, str]:
+def files(out: Path, member: Handed) -> dict[str, str]:
     """Return digests of all that a run has written about a team: its files, and its rows of the gradebook."""
-    named = [*(out / "results").glob(f"{one.team}.*"), *(out / "feedback" / one.team).rglob("*")]
-    found = {
+    named = [
+        *(out / "results").glob(f"{member.team}.*"),
+        *(out / "feedback" / member.team).rglob("*"),
+    ]
+    files_found = {
         str(file.relative_to(out)): hashlib.sha256(file.read_bytes()).hexdigest()
         for file in named
         if file.is_file()
     }
     rows = [
-        row for row in csv_tables.read_csv(out / "gradebook.csv") if row["student"] in one.students
+        row
+        for row in csv_tables.read_csv(out / "gradebook.csv")
+        if row["student"] in member.students
     ]
-    return found | {f"row of {row['student']}": repr(row) for row in rows}
+    return files_found | {f"row of {row['student']}": repr(row) for row in rows}
 
 
-def differing(one: Path, other: Path, each: Iterable[Handed]) -> int:
+def differing(folder: Path, other_folder: Path, members: Iterable[Handed]) -> int:
     """Return of how many files and rows two runs say different things."""
     count = 0
-    for team in each:
-        a, b = files(one, team), files(other, team)
+    for team in members:
+        a = files(folder, team)
+        b = files(other_folder, team)
         count += sum(a.get(name) != b.get(name) for name in {*a, *b})
     return count
 
 
-def lost(graded: Mapping[str, Result], each: Sequence[Handed]) -> int:
+def lost(graded: Mapping[str, Result], members: Sequence[Handed]) -> int:
     """Return how many submissions have no result."""
-    return len({one.team for one in each} - set(graded))
+    return len({member.team for member in members} - set(graded))
 
 
-def gained(graded: Mapping[str, Result], each: Iterable[Handed]) -> float:
+def gained(graded: Mapping[str, Result], members: Iterable[Handed]) -> float:
     """Return the most points that something hostile has got."""
     return max(
-        (graded[one.team].score for one in each if one.hostile and one.team in graded), default=0.0
+        (
+            graded[member.team].score
+            for member in members
+            if member.hostile and member.team in graded
+        ),
+        default=0.0,
     )
 
 
-def not_whole(graded: Mapping[str, Result], each: Iterable[Handed]) -> int:
+def not_whole(graded: Mapping[str, Result], members: Iterable[Handed]) -> int:
     """Return how many of those that are right have less than all points."""
-    right = [one for one in each if one.kind in ("right", "equivalent")]
+    right = [member for member in members if member.kind in ("right", "equivalent")]
     return sum(
-        one.team not in graded or graded[one.team].score < graded[one.team].max_score
-        for one in right
+        member.team not in graded or graded[member.team].score < graded[member.team].max_score
+        for member in right
     )
 
 
-def not_named(graded: Mapping[str, Result], each: Iterable[Handed]) -> float:
+def not_named(graded: Mapping[str, Result], members: Iterable[Handed]) -> float:
     """Return the share of the mistakes that were not recognised, in percent."""
-    known = {one.name: one for one in misconceptions.known()}
-    wrong = [one for one in each if one.kind == "mistake"]
+    known = {member.name: member for member in misconceptions.known()}
+    wrong = [member for member in members if member.kind == "mistake"]
     missed = [
-        one
-        for one in wrong
-        if one.team not in graded
-        or graded[one.team].misconceptions.get(known[one.which].task) != known[one.which].sentence
+        member
+        for member in wrong
+        if member.team not in graded
+        or graded[member.team].misconceptions.get(known[member.which].task)
+        != known[member.which].sentence
     ]
     return 100 * len(missed) / max(len(wrong), 1)
 
 
-def not_refused(graded: Mapping[str, Result], each: Iterable[Handed]) -> int:
+def not_refused(graded: Mapping[str, Result], members: Iterable[Handed]) -> int:
     """Return how many archives with a trap were not refused with a line."""
     traps = [
-        graded[one.team].problems if one.team in graded else ()
-        for one in each
-        if one.kind == "trap"
+        graded[member.team].problems if member.team in graded else ()
+        for member in members
+        if member.kind == "trap"
     ]
     return sum(
-        not any(line.startswith("The archive is refused: ") for line in said) for said in traps
+        not any(line.startswith("The archive is refused: ") for line in trap_text)
+        for trap_text in traps
     )
 
 

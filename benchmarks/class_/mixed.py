@@ -35,12 +35,12 @@ class Hostile(NamedTuple):
 
 def honest(count: int, target: Path) -> list[Handed]:
     """Return so many hand-ins, right, wrong, half done and blank, without the hostile ones of `handed`."""
-    return [one for one in handed.handed(2 * count, target) if not one.hostile][:count]
+    return [member for member in handed.handed(2 * count, target) if not member.hostile][:count]
 
 
 def hostile(target: Path, victim: Handed) -> list[Hostile]:
     """Return a hand-in of each kind and sort; attacks look around in `target`, names take the victim's."""
-    return [Hostile(f"x{k:03d}", *one) for k, one in enumerate(_each(target, victim))]
+    return [Hostile(f"x{k:03d}", *fields) for k, fields in enumerate(_each(target, victim))]
 
 
 def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
@@ -55,9 +55,10 @@ def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
         yield "attack", name, partial(_put, ".py", text)
     for name in archives.MALICIOUS_ARCHIVES:
         yield "trap", name, partial(_put, ".zip", handed.trap(name))
-    for kind, each in (("code", bad.HOSTILE_CODE), ("text", bad.CODE_WITH_NASTY_TEXTS)):
+    for kind, attacks_of_kind in (("code", bad.HOSTILE_CODE), ("text", bad.CODE_WITH_NASTY_TEXTS)):
         yield from (
-            (kind, name, partial(_put, ".py", text.encode())) for name, text in each.items()
+            (kind, name, partial(_put, ".py", text.encode()))
+            for name, text in attacks_of_kind.items()
         )
     for name, (ending, made) in bad.UNREADABLE_FILES.items():
         yield "file", name, partial(_put, ending, made())
@@ -87,13 +88,13 @@ def _inside(name: str, data: bytes, folder: Path, student: str) -> None:
     (folder / student / name).write_bytes(data)
 
 
-def write(folder: Path, each: list[Handed], others: list[Hostile]) -> Path:
+def write(folder: Path, members: list[Handed], others: list[Hostile]) -> Path:
     """Write an honest class with others among it: their files, and their lines in the roster."""
-    handed.write(folder, each)
-    for one in others:
-        one.put(folder / "submissions", one.student)
+    handed.write(folder, members)
+    for student in others:
+        student.put(folder / "submissions", student.student)
     rows = [tuple(row.values()) for row in csv_tables.read_csv(folder / "roster.csv")]
-    names = [(one.student, f"Student {one.student}", "") for one in others]
+    names = [(student.student, f"Student {student.student}", "") for student in others]
     csv_tables.write_csv(folder / "roster.csv", ("student", "name", "team"), [*rows, *names])
     return folder
 
@@ -102,4 +103,8 @@ def untold(out: Path, others: list[Hostile]) -> list[Hostile]:
     """Return those of whom a gradebook says neither points nor why there are none."""
     rows = {row["student"]: row for row in csv_tables.read_csv(out / "gradebook.csv")}
     there = {file.name.partition(".")[0] for file in (out / "results").glob("*.json")}
-    return [one for one in others if one.student not in there and not rows[one.student]["note"]]
+    return [
+        student
+        for student in others
+        if student.student not in there and not rows[student.student]["note"]
+    ]

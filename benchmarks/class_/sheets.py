@@ -11,38 +11,44 @@ from hdrlab.course.submissions import reader
 from hdrlab.course.variants import rewording
 
 SECRET = "sheets of a class"
-COUNT, MINUTES = 300, 3
+COUNT = 300
+MINUTES = 3
 
 
 def varied() -> plan.Plan:
     """Return hdrlab's own plan with all the parameters that there are."""
     read = plan.read()
     homeworks = {
-        name: one._replace(
+        name: homework._replace(
             tasks=tuple(
-                task._replace(parameters=(*rewording.parameters(task.id),)) for task in one.tasks
+                task._replace(parameters=(*rewording.parameters(task.id),))
+                for task in homework.tasks
             )
         )
-        for name, one in read.homeworks.items()
+        for name, homework in read.homeworks.items()
     }
     return read._replace(homeworks=homeworks)
 
 
 def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
     """Return how long the sheets of a class take, and whether each asks what its student is graded by."""
-    asked, teams = varied(), [f"s{number:03d}" for number in range(count)]
-    clock, processor = time.perf_counter(), time.process_time()
+    homeworks = varied()
+    teams = [f"s{number:03d}" for number in range(count)]
+    clock = time.perf_counter()
+    processor = time.process_time()
     files = [
         *solutions.build_for_teams_steps(
-            asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None
+            homeworks, ROOT / "solutions", teams, SECRET, folder / "sheets", None
         )
     ]
-    clock, processor = time.perf_counter() - clock, time.process_time() - processor
-    wrong, different = 0, set()
+    clock = time.perf_counter() - clock
+    processor = time.process_time() - processor
+    wrong = 0
+    different = set()
     for file in files:
-        drawn = plan.draw_variants(asked.homeworks[file.stem], file.parent.name, SECRET)
-        said = reader.tasks_of(file, []).variants
-        wrong += bool(plan.tasks_of_other_variants(drawn, said))
+        drawn = plan.draw_variants(homeworks.homeworks[file.stem], file.parent.name, SECRET)
+        variants = reader.tasks_of(file, []).variants
+        wrong += bool(plan.tasks_of_other_variants(drawn, variants))
         different.add(file.read_bytes())
     return {
         "sheets": len(files),

@@ -29,20 +29,20 @@ def cluster(folder: Path, number: int) -> Iterator[tuple[str, list[int]]]:
         raise Skipped('no distributed: pip install "hdrlab[cluster]"')
     folder.mkdir(parents=True)
     file = folder / "scheduler.json"
-    told = ["--scheduler-file", str(file), "--no-dashboard"]
+    arguments = ["--scheduler-file", str(file), "--no-dashboard"]
     with one_thread():
-        scheduler = _started("dask_scheduler", *told, "--host", "127.0.0.1", "--port", "0")
+        scheduler = _started("dask_scheduler", *arguments, "--host", "127.0.0.1", "--port", "0")
         started = [scheduler]
         try:
             _wait(file.exists)
-            each = ("--nthreads", "1", "--host", "127.0.0.1", "--local-directory", str(folder))
-            started += [_started("dask_worker", *told, *each) for _ in range(number)]
-            yield _address(file, number), [one.pid for one in started]
+            options = ("--nthreads", "1", "--host", "127.0.0.1", "--local-directory", str(folder))
+            started += [_started("dask_worker", *arguments, *options) for _ in range(number)]
+            yield _address(file, number), [worker.pid for worker in started]
         finally:
-            for one in reversed(started):
-                one.terminate()
-            for one in started:
-                one.wait()
+            for worker in reversed(started):
+                worker.terminate()
+            for worker in started:
+                worker.wait()
 
 
 def _started(name: str, *words: str) -> "subprocess.Popen[bytes]":

@@ -63,22 +63,22 @@ class Score(NamedTuple):
 
 def texts(kind: str) -> dict[str, dict[str, str]]:
     """Return the answers of a kind: task -> way -> source."""
-    found: dict[str, dict[str, str]] = {}
+    texts_found: dict[str, dict[str, str]] = {}
     for path in sorted(HERE.glob(f"{kind}/*/*.py")):
-        found.setdefault(path.parent.name, {})[path.stem] = path.read_text(encoding="utf8")
-    return found
+        texts_found.setdefault(path.parent.name, {})[path.stem] = path.read_text(encoding="utf8")
+    return texts_found
 
 
 def mistakes() -> dict[str, dict[str, str]]:
     """Return the named mistakes in the same form, each with all that it needs."""
-    found: dict[str, dict[str, str]] = {}
+    texts_found: dict[str, dict[str, str]] = {}
     for homework in plan.read().homeworks.values():
-        for one in misconceptions.known():
-            if one.task in [task.id for task in homework.tasks]:
-                own = tuple(task for task in homework.tasks if task.id == one.task)
-                cells = solutions.texts(homework._replace(tasks=own), [one.name])
-                found.setdefault(one.task, {})[one.name] = cells[one.task]
-    return found
+        for mistake in misconceptions.known():
+            if mistake.task in [task.id for task in homework.tasks]:
+                own = tuple(task for task in homework.tasks if task.id == mistake.task)
+                cells = solutions.texts(homework._replace(tasks=own), [mistake.name])
+                texts_found.setdefault(mistake.task, {})[mistake.name] = cells[mistake.task]
+    return texts_found
 
 
 def submissions(
@@ -88,7 +88,7 @@ def submissions(
     for homework in plan.read().homeworks.values():
         own = {task.id: list(answers.get(task.id, {}).items()) for task in homework.tasks}
         for row in zip_longest(*own.values()):
-            chosen = {task: one for task, one in zip(own, row, strict=True) if one is not None}
+            chosen = {task: text for task, text in zip(own, row, strict=True) if text is not None}
             tasks = tuple(task for task in homework.tasks if task.id in chosen)
             yield homework._replace(tasks=tasks), chosen
 
@@ -115,49 +115,57 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
     one_point = pytest.mark.points(1).mark  # of a check that says nothing of its weight
     marks = {name: getattr(test, "pytestmark", [one_point])[0] for name, test in tests.items()}
     worth = scoring.split_points(
-        Fraction(str(task.points)), [Fraction(str(one.args[0])) for one in marks.values()]
+        Fraction(str(task.points)), [Fraction(str(check.args[0])) for check in marks.values()]
     )
     checks = []
-    asked = []
+    checked_calls = []
     for (name, test), points in zip(tests.items(), worth, strict=True):
         subject.fresh()
         compare.notes.clear()
-        given = {
+        arguments = {
             "subject": subject,
             "rng": np.random.default_rng(plan.seed("fairness", student, task.id)),
         }
         ended = Check(task.id, name, name, Fraction(), points, "holds")
         try:
-            test(**{one: given[one] for one in inspect.signature(test).parameters})
+            test(**{check: arguments[check] for check in inspect.signature(test).parameters})
         except Exception as error:  # whatever an answer leads to costs that promise, and no other
             kind = error.kind if isinstance(error, NoAnswer) else ""
             outcome: Outcome = "no answer" if kind else "fails"
             ended = replace(ended, outcome=outcome, kind=kind, message=str(error))
         checks.append(ended)
-        calls = [(one.args, one.kwargs, one.answer) for one in subject.calls]
-        asked.append(misconceptions.CheckedCalls(calls=calls, holds=ended.outcome == "holds"))
-    broken = tuple(one.name for one in checks if one.outcome != "holds")
-    found = misconceptions.diagnose(task, asked) if broken else misconceptions.Diagnosis()
-    needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
-    traced = scoring.attribute_failures(
-        checks, needs, named=found.explains_all, once=found.costs_half_at_most
+        calls = [(check.args, check.kwargs, check.answer) for check in subject.calls]
+        checked_calls.append(
+            misconceptions.CheckedCalls(calls=calls, holds=ended.outcome == "holds")
+        )
+    broken = tuple(check.name for check in checks if check.outcome != "holds")
+    diagnosis = (
+        misconceptions.diagnose(task, checked_calls) if broken else misconceptions.Diagnosis()
     )
-    share = float(sum(one.points for one in traced) / sum(worth))
-    return Score(task.id, way, share, broken, tuple(one.name for one in found.mistakes))
+    needs = {name: check.kwargs.get("needs", "") for name, check in marks.items()}
+    traced = scoring.attribute_failures(
+        checks, needs, named=diagnosis.explains_all, once=diagnosis.costs_half_at_most
+    )
+    share = float(sum(check.points for check in traced) / sum(worth))
+    return Score(task.id, way, share, broken, tuple(check.name for check in diagnosis.mistakes))
 
 
 def scores(answers: dict[str, dict[str, str]], seeds: int) -> list[Score]:
     """Return the scores of all answers on so many students' inputs."""
-    items = [(*one, seeds) for one in submissions(answers)]
-    return [score for each in along(graded, items, "submissions") for score in each]
+    items = [(*submission, seeds) for submission in submissions(answers)]
+    return [
+        score for scores_of_item in along(graded, items, "submissions") for score in scores_of_item
+    ]
 
 
-def spread(found: list[Score]) -> float:
+def spread(scores_found: list[Score]) -> float:
     """Return by how much the score of one answer varies at most, and print of which it varies too much."""
     shares: dict[tuple[str, str], list[float]] = {}
-    for one in found:
-        shares.setdefault((one.task, one.way), []).append(one.share)
-    apart = {key: max(each) - min(each) for key, each in shares.items()}
+    for score in scores_found:
+        shares.setdefault((score.task, score.way), []).append(score.share)
+    apart = {
+        key: max(student_shares) - min(student_shares) for key, student_shares in shares.items()
+    }
     for (task, way), most in apart.items():
         if most > TWENTIETH:
             print(
@@ -166,23 +174,25 @@ def spread(found: list[Score]) -> float:
     return max(apart.values())
 
 
-def table(found: list[Score]) -> str:
+def table(scores_found: list[Score]) -> str:
     """Return a line for each task: its ways, answers, refusals, and the share of points, least and most."""
     lines = [f"  {'task':<20}{'ways':>6}{'answers':>9}{'refused':>9}{'least':>8}{'most':>8}"]
-    for task in dict.fromkeys(one.task for one in found):
-        own = [one for one in found if one.task == task]
-        shares = [one.share for one in own]
-        counts = f"{len({one.way for one in own}):>6}{len(own):>9}{sum(s < 1 for s in shares):>9}"
+    for task in dict.fromkeys(score.task for score in scores_found):
+        own = [score for score in scores_found if score.task == task]
+        shares = [score.share for score in own]
+        counts = (
+            f"{len({score.way for score in own}):>6}{len(own):>9}{sum(s < 1 for s in shares):>9}"
+        )
         lines.append(f"  {task:<20}{counts}{min(shares):>8.0%}{max(shares):>8.0%}")
     return "\n".join(lines)
 
 
-def refusals(found: list[Score]) -> list[str]:
+def refusals(scores_found: list[Score]) -> list[str]:
     """Return which ways lost points, by which promises, and how often."""
     lost: dict[tuple[str, ...], int] = {}
-    for one in found:
-        for promise in one.broken:
-            lost[one.task, one.way, promise] = lost.get((one.task, one.way, promise), 0) + 1
+    for score in scores_found:
+        for promise in score.broken:
+            lost[score.task, score.way, promise] = lost.get((score.task, score.way, promise), 0) + 1
     return [
         f"  {task} {way}: {promise}, {count} times" for (task, way, promise), count in lost.items()
     ]
@@ -190,42 +200,44 @@ def refusals(found: list[Score]) -> list[str]:
 
 def right(_: Path) -> dict[str, Any]:
     """Return how many right answers are refused."""
-    found = scores(texts("right"), SEEDS)
-    print("\n".join([table(found), *refusals(found)]))
-    ways = {(one.task, one.way) for one in found}
-    fewest = min(sum(task == one.id for task, _ in ways) for one in _tasks())
+    scores_found = scores(texts("right"), SEEDS)
+    print("\n".join([table(scores_found), *refusals(scores_found)]))
+    ways = {(score.task, score.way) for score in scores_found}
+    fewest = min(sum(task == score.id for task, _ in ways) for score in _tasks())
     return {
-        "right ways, and answers": (len(ways), len(found)),
+        "right ways, and answers": (len(ways), len(scores_found)),
         "fewest ways of a task": fewest,
-        "right answers refused": sum(one.share < 1 for one in found),
+        "right answers refused": sum(score.share < 1 for score in scores_found),
     }
 
 
 def wrong(_: Path) -> dict[str, Any]:
     """Return what plausible answers without the method get."""
-    found = scores(texts("wrong"), SEEDS)
-    print(table(found))
+    scores_found = scores(texts("wrong"), SEEDS)
+    print(table(scores_found))
     return {
-        "wrong answers": len(found),
-        "largest share of a wrong answer": max(one.share for one in found),
-        "by which a score varies": spread(found),
+        "wrong answers": len(scores_found),
+        "largest share of a wrong answer": max(score.share for score in scores_found),
+        "by which a score varies": spread(scores_found),
     }
 
 
 def named(_: Path) -> dict[str, Any]:
     """Return what the named mistakes get, and how many are named."""
-    found = scores(mistakes(), SEEDS)
-    print(table(found))
-    method = [one.name for one in misconceptions.known() if one.misses_method]
+    scores_found = scores(mistakes(), SEEDS)
+    print(table(scores_found))
+    method = [score.name for score in misconceptions.known() if score.misses_method]
     print(f"  of these miss what their task is about: {', '.join(method)}")
     return {
-        "answers with a mistake": len(found),
-        "of which with no point or all": sum(one.share in (0, 1) for one in found),
+        "answers with a mistake": len(scores_found),
+        "of which with no point or all": sum(score.share in (0, 1) for score in scores_found),
         "of the others, that cost more than half": sum(
-            one.share < 1 / 2 and one.way not in method for one in found
+            score.share < 1 / 2 and score.way not in method for score in scores_found
         ),
-        "named, %": 100 * sum(one.named == (one.way,) for one in found) / len(found),
-        "by which a score varies": spread(found),
+        "named, %": 100
+        * sum(score.named == (score.way,) for score in scores_found)
+        / len(scores_found),
+        "by which a score varies": spread(scores_found),
     }
 
 

@@ -70,8 +70,9 @@ def fuzz(
     reader: Reader, numbers: Iterable[int], *, seed: int = SEED, seconds: float = 1e9
 ) -> Tally:
     """Return what becomes of the mutated files of these numbers, until the seconds are over."""
-    start, counts = time.perf_counter(), Counter[str]()
-    found: dict[str, Finding] = {}
+    start = time.perf_counter()
+    counts = Counter[str]()
+    tally: dict[str, Finding] = {}
     with tempfile.TemporaryDirectory(prefix="hdrlab-fuzz-") as scratch, Process(reader) as process:
         seeds = reader.seeds(Path(scratch))
         sound_checksums = {process.judge(data).said for data in seeds}
@@ -80,13 +81,13 @@ def fuzz(
             if time.perf_counter() - start > seconds:
                 break
             data = mutations.mutated(seeds, mutations.generator(seed, reader.name, number))
-            kind, said = process.judge(data)
+            kind, message = process.judge(data)
             counts[kind] += 1
-            if kind == READ and said not in sound_checksums:
+            if kind == READ and message not in sound_checksums:
                 other_pixels += 1
-            if kind not in (READ, CLEAN) and kind not in found:
-                found[kind] = Finding(
-                    number, f"{kind}: {said}", minimised(data, process.alike(kind))
+            if kind not in (READ, CLEAN) and kind not in tally:
+                tally[kind] = Finding(
+                    number, f"{kind}: {message}", minimised(data, process.alike(kind))
                 )
     taken = time.perf_counter() - start
     return Tally(
@@ -94,7 +95,7 @@ def fuzz(
         counts.total(),
         counts[READ],
         counts[CLEAN],
-        tuple(found.values()),
+        tuple(tally.values()),
         taken,
         other_pixels,
     )
@@ -104,11 +105,11 @@ def keep(folder: Path, tally: Tally, seed: int) -> None:
     """Write each finding's file, and beside it what was said, with the numbers that make it again."""
     folder.mkdir(parents=True, exist_ok=True)
     suffix = READERS[tally.reader].suffix
-    for one in tally.findings:
-        path = folder / f"{tally.reader}-{seed}-{one.number}{suffix}"
-        path.write_bytes(one.data)
+    for finding in tally.findings:
+        path = folder / f"{tally.reader}-{seed}-{finding.number}{suffix}"
+        path.write_bytes(finding.data)
         path.with_name(path.name + ".txt").write_text(
-            one.said + "\n", encoding="utf8", errors="replace"
+            finding.said + "\n", encoding="utf8", errors="replace"
         )
 
 
@@ -155,29 +156,30 @@ def main(arguments: Sequence[str]) -> int:
     """Print a line a reader and its findings; return 1 where there is one."""
     options = parse(arguments)
     names = options.reader or list(READERS)
-    each = 60 * options.minutes / len(names) if options.minutes else 1e9
+    seconds = 60 * options.minutes / len(names) if options.minutes else 1e9
     numbers = partial(range, options.first, options.first + (10**9 if options.minutes else FILES))
     print(f"seed {options.seed}\n{HEADER}", flush=True)
     tallies: list[Tally] = []
     for name in names:
         try:
-            tally = fuzz(READERS[name], numbers(), seed=options.seed, seconds=each)
+            tally = fuzz(READERS[name], numbers(), seed=options.seed, seconds=seconds)
         except Missing as reason:
             print(f"{name:<16}  skipped: {reason}", flush=True)
             continue
         tallies.append(tally)
-        print("\n".join([tally.line, *map(told, tally.findings)]), flush=True)
+        print("\n".join([tally.line, *map(describe_finding, tally.findings)]), flush=True)
         if options.keep:
             keep(options.keep, tally, options.seed)
-    files, findings = sum(one.files for one in tallies), sum(len(one.findings) for one in tallies)
+    files = sum(tally_of_reader.files for tally_of_reader in tallies)
+    findings = sum(len(tally_of_reader.findings) for tally_of_reader in tallies)
     print(f"{files:,} files, {findings} findings")
     return int(findings > 0)
 
 
-def told(one: Finding) -> str:
+def describe_finding(finding: Finding) -> str:
     """Return a finding as a line under its reader's."""
-    text = one.said.encode("ascii", "backslashreplace").decode()
-    return f"  file {one.number}, {len(one.data)} bytes: {text[:300]!r}"
+    text = finding.said.encode("ascii", "backslashreplace").decode()
+    return f"  file {finding.number}, {len(finding.data)} bytes: {text[:300]!r}"
 
 
 ROWS = tuple(row(name) for name in READERS)

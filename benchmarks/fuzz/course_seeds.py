@@ -90,10 +90,10 @@ def project(folder: Path) -> None:
 def result(folder: Path) -> None:
     """Write a result with a check that fails and its drawing."""
     drawing = results.Drawing((web.encode_webp(RGB),), ("it",), ("below",))
-    one = results.Check(
+    check = results.Check(
         "hat", "test_hat", "It peaks.", Fraction(1, 3), Fraction(2, 3), "fails", "no", ("a", "b")
     )
-    checks = (one, replace(one, drawing=drawing, kind="raised"))
+    checks = (check, replace(check, drawing=drawing, kind="raised"))
     names = ("b01", "hw2", "The curve", "strict")
     whole = results.Result(
         *names, checks, {"hat": "tent"}, ("none",), "ab", "cd", "ef", {"numpy": "2"}
@@ -137,13 +137,13 @@ def archives(folder: Path) -> None:
 
 def manifest(folder: Path) -> None:
     """Write what an archive of `hdrlab submit` says of itself."""
-    said = {
+    settings = {
         "title": "Dusk",
         "caption": "Seven frames.",
         "artifact": "artifact.png",
         "students": ["b01"],
     }
-    (folder / "a.json").write_text(json.dumps(said, indent=1))
+    (folder / "a.json").write_text(json.dumps(settings, indent=1))
 
 
 @contextmanager

@@ -21,7 +21,8 @@ def _without_blocks(
     data: bytes, size: int, still: Callable[[bytes], bool], tries: int
 ) -> tuple[bytes, int, bool]:
     """Return the data without the blocks of a size that are not needed, the tries left, and if any went."""
-    at, before = 0, len(data)
+    at = 0
+    before = len(data)
     while at < len(data) and tries > 0:
         candidate = data[:at] + data[at + size :]
         tries -= 1

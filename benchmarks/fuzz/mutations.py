@@ -119,13 +119,15 @@ def remove(data: bytearray, rng: random.Random) -> None:
 
 def repeat(data: bytearray, rng: random.Random) -> None:
     """Have a block twice, or many times."""
-    at, size = place(data, rng), rng.choice((1, 4, 12, 64, 500))
+    at = place(data, rng)
+    size = rng.choice((1, 4, 12, 64, 500))
     data[at:at] = data[at : at + size] * rng.choice((1, 1, 2, 50))
 
 
 def edge(data: bytearray, rng: random.Random) -> None:
     """Write a number at the edge of its range over what stands there, as a header has it."""
-    form, value = rng.choice(FORMS), rng.choice(EDGES)
+    form = rng.choice(FORMS)
+    value = rng.choice(EDGES)
     packed = struct.pack(form, value & ((1 << 8 * struct.calcsize(form)) - 1))
     at = place(data, rng)
     data[at : at + len(packed)] = packed
@@ -133,10 +135,10 @@ def edge(data: bytearray, rng: random.Random) -> None:
 
 def number(data: bytearray, rng: random.Random) -> None:
     """Replace a number that is written in digits."""
-    found = list(NUMBER.finditer(bytes(data[:20_000])))
-    if found:
-        one = rng.choice(found)
-        data[one.start() : one.end()] = rng.choice(NUMBERS)
+    matches = list(NUMBER.finditer(bytes(data[:20_000])))
+    if matches:
+        match = rng.choice(matches)
+        data[match.start() : match.end()] = rng.choice(NUMBERS)
 
 
 def insert(data: bytearray, rng: random.Random) -> None:
@@ -148,19 +150,22 @@ def insert(data: bytearray, rng: random.Random) -> None:
 def line(data: bytearray, rng: random.Random) -> None:
     """Move, double or drop a line, such as a field of a header."""
     lines = bytes(data).split(b"\n")
-    one = lines.pop(rng.randrange(len(lines)))
+    line_taken = lines.pop(rng.randrange(len(lines)))
     for _ in range(rng.randrange(3)):
-        lines.insert(rng.randrange(len(lines) + 1), one)
+        lines.insert(rng.randrange(len(lines) + 1), line_taken)
     data[:] = b"\n".join(lines)
 
 
 def swap(data: bytearray, rng: random.Random) -> None:
     """Exchange two blocks."""
     size = rng.choice((1, 2, 4, 12, 64))
-    a, b = place(data, rng), place(data, rng)
-    first, second = bytes(data[a : a + size]), bytes(data[b : b + size])
+    a = place(data, rng)
+    b = place(data, rng)
+    first = bytes(data[a : a + size])
+    second = bytes(data[b : b + size])
     if len(first) == len(second) and abs(a - b) >= size:
-        data[a : a + size], data[b : b + size] = second, first
+        data[a : a + size] = second
+        data[b : b + size] = first
 
 
 Change = Callable[[bytearray, random.Random], None]

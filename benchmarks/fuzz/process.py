@@ -46,11 +46,13 @@ class Process:
         """Return what became of a file of these bytes."""
         path = Path(self.folder.name, f"fuzzed{self.reader.suffix}")
         path.write_bytes(data)
-        child = self.child = self.child or self._started()
-        asked, answers = _pipes(child)
-        with contextlib.suppress(BrokenPipeError):  # it is dead, which is seen below
-            asked.write(f"{path}\n")
-            asked.flush()
+        if self.child is None:
+            self.child = self._started()
+        child = self.child
+        requests, answers = _pipes(child)
+        with contextlib.suppress(BrokenPipeError):  # the child has died, which is noticed below
+            requests.write(f"{path}\n")
+            requests.flush()
         if not select.select([answers], [], [], PATIENCE)[0]:
             self._end()
             return Verdict("hang", f"no answer in {PATIENCE:.0f} s")

@@ -115,8 +115,8 @@ def read_exif(path: Path) -> None:
 
 def read_class_answers(path: Path) -> object:
     """Read the answers of a class, and match the students with themselves."""
-    found = answers.read_answers(path)
-    return answers.match_students(found, found)
+    class_answers = answers.read_answers(path)
+    return answers.match_students(class_answers, class_answers)
 
 
 def read_result(path: Path) -> None:
@@ -127,8 +127,8 @@ def read_result(path: Path) -> None:
 
 def read_submission(path: Path) -> None:
     """Read what was handed in, whose problems are told and not raised."""
-    found = reader.tasks_of(path, ("hat", "gsolve"))
-    if sum(map(len, found.problems)) > 8000:
+    submission = reader.tasks_of(path, ("hat", "gsolve"))
+    if sum(map(len, submission.problems)) > 8000:
         raise ArithmeticError("problems without end")
 
 
@@ -160,8 +160,8 @@ def read_project(path: Path) -> None:
 
 def read_words(path: Path) -> None:
     """Read a report's words, which are to be text that UTF-8 can hold."""
-    found = words.read(path)
-    for text in (found.title, *found.notes, *(one.html for one in found.sections)):
+    report = words.read(path)
+    for text in (report.title, *report.notes, *(section.html for section in report.sections)):
         text.encode()
 
 
@@ -235,4 +235,4 @@ ALL: Sequence[Reader] = (
         lambda path: tokens.read(path.read_text("utf8", "replace")),
     ),
 )
-READERS = {one.name: one for one in ALL}
+READERS = {reader.name: reader for reader in ALL}

@@ -112,18 +112,22 @@ def jpegxl(folder: Path) -> None:
         (folder / f"{name}.jxl").write_bytes(imagecodecs.jpegxl_encode(pixels, lossless=True))
     (folder / "lossy.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB, distance=2.0))
     (folder / "gray.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB[..., 1], usecontainer=True))
-    Image.fromarray(RGB).save(file := io.BytesIO(), "JPEG", exif=_exif())
+    file = io.BytesIO()
+    Image.fromarray(RGB).save(file, "JPEG", exif=_exif())
     (folder / "was.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
     packed = b"Exif" + imagecodecs.brotli_encode(bytes(4) + _exif().tobytes()[6:])
     boxes = [(b"JXL ", b"\r\n\x87\n"), (b"ftyp", b"jxl \0\0\0\0jxl "), (b"brob", packed)]
     boxes += [(b"jxlc", imagecodecs.jpegxl_encode(RGB))]
-    data = b"".join(struct.pack(">I4s", 8 + len(said), name) + said for name, said in boxes)
+    data = b"".join(
+        struct.pack(">I4s", 8 + len(content), name) + content for name, content in boxes
+    )
     (folder / "packed.jxl").write_bytes(data)
 
 
 def _exif() -> Image.Exif:
     tags = Image.Exif()
-    tags[0x0112], tags[0x010F] = 6, "Maker"
+    tags[0x0112] = 6
+    tags[0x010F] = "Maker"
     tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 100, 0xA431: "7"})
     tags.get_ifd(0x8825).update({1: "N", 2: (1.0, 2.0, 3.0)})
     return tags

@@ -24,9 +24,11 @@ import numpy as np
 
 from benchmarks.fuzz.readers import READERS, Reader
 
-READ, CLEAN = "result", "clean error"
+READ = "result"
+CLEAN = "clean error"
 # bytes of address space, and seconds of a processor a file
-MEMORY, SECONDS = 2 << 30, 5.0
+MEMORY = 2 << 30
+SECONDS = 5.0
 # files, after which a reader has imported what it needs
 FIRST = 20
 # characters of a message
@@ -65,15 +67,16 @@ def state(folder: Path) -> State:
 def judged(reader: Reader, path: Path, printed: Callable[[], str]) -> tuple[str, str]:
     """Return the kind of what reading a file comes to, and words."""
     before = state(path.parent)
-    kind, said = outcome(reader, path)
+    kind, message = outcome(reader, path)
     gc.collect()  # what an error still held
-    words, after = printed(), state(path.parent)
+    words = printed()
+    after = state(path.parent)
     if kind not in (READ, CLEAN):
-        return kind, said
+        return kind, message
     if not re.fullmatch(reader.printed, words):
         return f"printed {words[:40]}", words
     changed = [name for name in State._fields if getattr(before, name) != getattr(after, name)]
-    return (f"changed {', '.join(changed)}", said) if changed else (kind, said)
+    return (f"changed {', '.join(changed)}", message) if changed else (kind, message)
 
 
 def outcome(reader: Reader, path: Path) -> tuple[str, str]:
@@ -81,16 +84,19 @@ def outcome(reader: Reader, path: Path) -> tuple[str, str]:
     try:
         answer = reader.read(path)
     except reader.errors as error:
-        said = str(error)
+        message = str(error)
         if isinstance(error, UnicodeError):
-            return f"{type(error).__name__} at {where(error)}", said[:LONGEST]
-        if len(said) >= LONGEST:
-            return f"a message too long at {where(error)}", f"{len(said)} characters: {said[:200]}"
-        if "MemoryError" in said:
-            return f"memory at {where(error)}", said
-        if reader.named and path.stem not in said:
-            return f"no file named at {where(error)}", said
-        return CLEAN, said
+            return f"{type(error).__name__} at {where(error)}", message[:LONGEST]
+        if len(message) >= LONGEST:
+            return (
+                f"a message too long at {where(error)}",
+                f"{len(message)} characters: {message[:200]}",
+            )
+        if "MemoryError" in message:
+            return f"memory at {where(error)}", message
+        if reader.named and path.stem not in message:
+            return f"no file named at {where(error)}", message
+        return CLEAN, message
     except BaseException as error:  # whatever it is, it is a finding
         return f"{type(error).__name__} at {where(error)}", str(error)[:LONGEST]
     return READ, checksum(answer)
@@ -106,9 +112,9 @@ def checksum(answer: object) -> str:
 def where(error: BaseException) -> str:
     """Return the last line of hdrlab that an error went through."""
     lines = [
-        one
-        for one in traceback.extract_tb(error.__traceback__)
-        if f"{os.sep}hdrlab{os.sep}" in one.filename
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if f"{os.sep}hdrlab{os.sep}" in frame.filename
     ]
     return f"{Path(lines[-1].filename).name}:{lines[-1].lineno}" if lines else "the reader"
 
@@ -116,17 +122,17 @@ def where(error: BaseException) -> str:
 def redirected(folder: Path) -> tuple[int, Callable[[], str]]:
     """Turn both streams, those of C libraries too, to a file; return the old one, and what reads the file."""
     answers = os.dup(1)
-    said = os.open(folder / "said", os.O_RDWR | os.O_CREAT | os.O_APPEND)
+    output = os.open(folder / "said", os.O_RDWR | os.O_CREAT | os.O_APPEND)
     for stream in (1, 2):
-        os.dup2(said, stream)
+        os.dup2(output, stream)
 
     def printed() -> str:
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
-        if not (size := os.fstat(said).st_size):
+        if not (size := os.fstat(output).st_size):
             return ""
-        words = os.pread(said, min(size, LONGEST), 0).decode("utf8", "replace")
-        os.ftruncate(said, 0)
+        words = os.pread(output, min(size, LONGEST), 0).decode("utf8", "replace")
+        os.ftruncate(output, 0)
         return words
 
     return answers, printed
@@ -146,6 +152,6 @@ def main(name: str, folder: str) -> None:
             # what was imported by now stays: to look through it after each file takes 60 ms
             gc.freeze()
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
-        found = judged(reader, Path(line.rstrip("\n")), printed)
+        outcome_found = judged(reader, Path(line.rstrip("\n")), printed)
         signal.setitimer(signal.ITIMER_PROF, 0)
-        os.write(answers, json.dumps(found).encode() + b"\n")
+        os.write(answers, json.dumps(outcome_found).encode() + b"\n")

@@ -29,7 +29,8 @@ from hdrlab.radiance.merge import Merged, merge_with_quality
 CHANGE = 0.05  # of the radiance: less than that is hardly a figure's, but the shadow's of one
 SEEDS = range(4)
 REFERENCE = 3  # the middle frame
-G, W = true_g("film"), weights.gaussian()
+G = true_g("film")
+W = weights.gaussian()
 
 
 class Errors(NamedTuple):
@@ -67,22 +68,25 @@ def stops(E: Array, truth: Array, where: NDArray[np.bool_]) -> float:
 
 def errors(taken: Moving, way: str) -> Errors:
     """Return the Errors of a sequence by one of the ways."""
-    merged, found = plain(taken.bracket), rid(taken.bracket, way)
+    merged = plain(taken.bracket)
+    corrected = rid(taken.bracket, way)
     scale = np.median((merged.E / taken.still)[~taken.region])
-    still, moments = taken.still * scale, np.maximum(taken.moments * scale, 1e-9)
+    still = taken.still * scale
+    moments = np.maximum(taken.moments * scale, 1e-9)
     passed = taken.region & (np.abs(np.log(moments / still)).max(axis=(0, 3)) > CHANGE)
-    inside, outside = passed & (found.labels > 0), passed & (found.labels == 0)
-    known = inside & (found.quality == 0) & (merged.quality == 0)
+    inside = passed & (corrected.labels > 0)
+    outside = passed & (corrected.labels == 0)
+    known = inside & (corrected.quality == 0) & (merged.quality == 0)
     truth = still.copy()
-    for r, j in enumerate(found.references, start=1):
-        truth[found.labels == r] = moments[j][found.labels == r]
+    for r, j in enumerate(corrected.references, start=1):
+        truth[corrected.labels == r] = moments[j][corrected.labels == r]
     return Errors(
-        plain=min(stops(merged.E, one, known) for one in (truth, still, *moments)),
-        without=stops(found.E, truth, known),
+        plain=min(stops(merged.E, light, known) for light in (truth, still, *moments)),
+        without=stops(corrected.E, truth, known),
         measured=known.sum() / inside.sum(),
-        elsewhere=float(np.abs(found.E / merged.E - 1)[found.labels == 0].max()),
-        left=float(np.median(np.abs(found.E / still - 1)[outside])) if outside.any() else 0.0,
-        regions=len(found.references),
+        elsewhere=float(np.abs(corrected.E / merged.E - 1)[corrected.labels == 0].max()),
+        left=float(np.median(np.abs(corrected.E / still - 1)[outside])) if outside.any() else 0.0,
+        regions=len(corrected.references),
     )
 
 
@@ -93,16 +97,16 @@ def of(item: tuple[str, str, str]) -> Errors:
 
 def removal(way: str) -> Mapping[str, ArrayLike]:
     """Return the figures of all sequences by one way."""
-    found = along(of, [(*one, way) for one in SEQUENCES], f"ghosts, {way}")
+    results = along(of, [(*sequence, way) for sequence in SEQUENCES], f"ghosts, {way}")
     figures: dict[str, ArrayLike] = {
-        f"{place}, {who}: stops before and after": (one.plain, one.without)
-        for (place, who), one in zip(SEQUENCES, found, strict=True)
+        f"{place}, {who}: stops before and after": (sequence.plain, sequence.without)
+        for (place, who), sequence in zip(SEQUENCES, results, strict=True)
     }
-    figures["least ratio"] = min(one.ratio for one in found)
-    figures["median ratio"] = float(np.median([one.ratio for one in found]))
-    figures["least share measured"] = min(one.measured for one in found)
-    figures["most change elsewhere"] = max(one.elsewhere for one in found)
-    figures["most left over, median of pixels"] = max(one.left for one in found)
+    figures["least ratio"] = min(sequence.ratio for sequence in results)
+    figures["median ratio"] = float(np.median([sequence.ratio for sequence in results]))
+    figures["least share measured"] = min(sequence.measured for sequence in results)
+    figures["most change elsewhere"] = max(sequence.elsewhere for sequence in results)
+    figures["most left over, median of pixels"] = max(sequence.left for sequence in results)
     return figures
 
 
@@ -126,21 +130,21 @@ def found_in_stillness(place: str) -> tuple[int, int, float]:
     brackets = [
         still(place),
         still(place, (512, 768)),
-        *(one for s in SEEDS for _, one in shaken(place, s)),
+        *(bracket for s in SEEDS for _, bracket in shaken(place, s)),
     ]
-    found = [(rid(one, "regions"), plain(one)) for one in brackets]
-    change = max(float(np.abs(one.E / merged.E - 1).max()) for one, merged in found)
-    return sum(len(one.references) > 0 for one, _ in found), len(found), change
+    pairs = [(rid(bracket, "regions"), plain(bracket)) for bracket in brackets]
+    change = max(float(np.abs(bracket.E / merged.E - 1).max()) for bracket, merged in pairs)
+    return sum(len(bracket.references) > 0 for bracket, _ in pairs), len(pairs), change
 
 
 def stillness(_: Path) -> Mapping[str, ArrayLike]:
     """Return what is found where nothing moved, on a tripod and in a hand."""
-    found = along(found_in_stillness, STILL, "still")
+    results = along(found_in_stillness, STILL, "still")
     figures: dict[str, ArrayLike] = {
-        place: one[:2] for place, one in zip(STILL, found, strict=True)
+        place: place_and_seed[:2] for place, place_and_seed in zip(STILL, results, strict=True)
     }
-    figures["brackets with a region"] = sum(one[0] for one in found)
-    figures["most change"] = max(one[2] for one in found)
+    figures["brackets with a region"] = sum(place_and_seed[0] for place_and_seed in results)
+    figures["most change"] = max(place_and_seed[2] for place_and_seed in results)
     return figures
 
 

@@ -31,14 +31,17 @@ RNG = 1
 def sequence(place: str, who: str, shape: tuple[int, int] = SHAPE) -> movers.Moving:
     """Return a bracket of a place with somebody in it, and its truth."""
     layers = scenes.layers(place, shape)
-    E, k = layers.radiance, shape[1] / SHAPE[1]  # what is counted in pixels grows with the picture
+    # what is counted in pixels grows with the picture
+    E = layers.radiance
+    k = shape[1] / SHAPE[1]
     light = np.array([8, 4, 2] if who == "bright ball" else [0.25] * 3) * np.median(E)
     figure, step = {
         "visitor": (movers.Figure(layers.mover, layers.mask), (0, 12 * k)),
         "bright ball": (movers.ball(shape, (128 * k, 192 * k), 24 * k, light), (10 * k, 40 * k)),
         "dark ball": (movers.ball(shape, (150 * k, 192 * k), 24 * k, light), (0, 22 * k)),
     }[who]
-    at, times = movers.path(FRAMES, step), camera.times_around(E, FRAMES, stops=2)
+    at = movers.path(FRAMES, step)
+    times = camera.times_around(E, FRAMES, stops=2)
     return movers.shoot(E, figure, at, times, CAMERA, rng=RNG)
 
 
@@ -60,10 +63,13 @@ def shaken(place: str, seed: int) -> Iterator[tuple[str, Bracket]]:
     One has half the scene's size: whole pixels of the scene are half ones of the picture. The other
     has its full size, and light between pixels is interpolated.
     """
-    E, rng = radiance(place), np.random.default_rng(seed)
+    E = radiance(place)
+    rng = np.random.default_rng(seed)
     times = camera.times_around(E, FRAMES, stops=2)
-    height, width = E.shape[0] - 4, E.shape[1] - 4
-    coarse, fine = [], []
+    height = E.shape[0] - 4
+    width = E.shape[1] - 4
+    coarse = []
+    fine = []
     for j, t in enumerate(times):
         dy, dx = rng.integers(1, 3, 2, endpoint=True)
         view = resample(E[dy : dy + height, dx : dx + width], (height // 2, width // 2))

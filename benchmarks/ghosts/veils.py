@@ -40,10 +40,11 @@ class Left(NamedTuple):
     close: float
 
 
-def left(E: Array, F: Array, found: Array, where: Array, lens: GlareSpread) -> Left:
+def left(E: Array, F: Array, corrected: Array, where: Array, lens: GlareSpread) -> Left:
     """Return what is Left of a veil, where the scene had radiance E and the map F."""
     region = (1 - (1 - lens.share) * E / F).max(axis=-1) > AFFECTED
-    before, after = (np.abs(one / E - 1).max(axis=-1)[region & where] for one in (F, found))
+    before = np.abs(F / E - 1).max(axis=-1)[region & where]
+    after = np.abs(corrected / E - 1).max(axis=-1)[region & where]
     return Left(float(np.median(before)), float(np.median(after)), float(np.mean(after < CLOSE)))
 
 
@@ -67,23 +68,25 @@ def through(F: Array) -> tuple[Array, Array]:
     """Return a scene as ten photographs show it, in its own unit, and how each pixel is known."""
     times = 0.9 / F.max() * 4.0 ** np.arange(10)
     taken = camera.shoot(F, times, CAMERA, rng=1)
-    found = merge_with_quality(taken.images, taken.times, true_g("film"), weights.gaussian())
-    return found.E * np.median(F / found.E), found.quality
+    merged = merge_with_quality(taken.images, taken.times, true_g("film"), weights.gaussian())
+    return merged.E * np.median(F / merged.E), merged.quality
 
 
 def figures(what: str, work: Callable[[tuple[str, GlareSpread]], Left]) -> Mapping[str, ArrayLike]:
     """Return the figures of all scenes and lenses."""
     items = list(product(STILL, LENSES))
-    found = along(work, items, f"flare, {what}")
+    results = along(work, items, f"flare, {what}")
     out: dict[str, ArrayLike] = {}
     for place in STILL:
-        own = [one for (name, _), one in zip(items, found, strict=True) if name == place]
+        own = [result for (name, _), result in zip(items, results, strict=True) if name == place]
         out[f"{place}: worst median before, after"] = tuple(
-            max(one[k] for one in own) for k in (0, 1)
+            max(result[k] for result in own) for k in (0, 1)
         )
-    out["worst median error"] = max(one.after for one in found)
-    out["least share of pixels within 5 %"] = min(one.close for one in found)
-    out["median share of pixels within 5 %"] = float(np.median([one.close for one in found]))
+    out["worst median error"] = max(result.after for result in results)
+    out["least share of pixels within 5 %"] = min(result.close for result in results)
+    out["median share of pixels within 5 %"] = float(
+        np.median([result.close for result in results])
+    )
     return out
 
 

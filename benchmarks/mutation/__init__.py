@@ -58,7 +58,8 @@ GRADER = (
 )
 # seconds of tests that are asked of a mutant: of those that run its line, and of those that run its
 # file
-NEAR, FAR = 240.0, 60.0
+NEAR = 240.0
+FAR = 60.0
 CLOSE = "killed, %"
 
 
@@ -89,16 +90,17 @@ class Forked:
 
     def run(self, tests: Sequence[str], seconds: float) -> int:
         """Return the exit code of the tests."""
-        asked, answers = _pipes(self.process)
-        asked.write(json.dumps({"tests": list(tests), "seconds": seconds}) + "\n")
-        asked.flush()
+        requests, answers = _pipes(self.process)
+        requests.write(json.dumps({"tests": list(tests), "seconds": seconds}) + "\n")
+        requests.flush()
         return int(answers.readline())
 
     @contextmanager
     def changed(self, mutant: Mutant) -> Iterator[None]:
         """Hold the change in the tree."""
         path = self.tree / mutant.file
-        before, state = path.read_text(encoding="utf8"), path.stat()
+        before = path.read_text(encoding="utf8")
+        state = path.stat()
         path.write_text(mutant.applied(before), encoding="utf8")
         try:
             yield
@@ -122,22 +124,23 @@ def _pipes(process: "subprocess.Popen[str]") -> tuple[IO[str], IO[str]]:
 
 def fate(mutant: Mutant, trees: "Queue[Forked]", tests: Known) -> Fate:
     """Return what becomes of a mutant."""
-    forked, asked = trees.get(), 0
+    forked = trees.get()
+    count = 0
     try:
         with forked.changed(mutant):
             for chosen, most in ((tests.near, NEAR), (tests.far, FAR)):
                 some = within(chosen(mutant.file, mutant.line), tests.seconds, most)
-                asked += len(some)
-                if some and forked.run(some, 60 + 10 * sum(tests.seconds[one] for one in some)):
-                    return Fate(mutant, True, asked)
-        return Fate(mutant, False, asked)
+                count += len(some)
+                if some and forked.run(some, 60 + 10 * sum(tests.seconds[test] for test in some)):
+                    return Fate(mutant, True, count)
+        return Fate(mutant, False, count)
     finally:
         trees.put(forked)
 
 
 def within(tests: Sequence[str], seconds: dict[str, float], most: float) -> list[str]:
     """Return the first tests that together take so many seconds at most."""
-    total = np.cumsum([seconds[one] for one in tests])
+    total = np.cumsum([seconds[test] for test in tests])
     return list(tests[: int(np.searchsorted(total, most, side="right"))])
 
 
@@ -153,7 +156,8 @@ def copies(folder: Path, count: int) -> list[Path]:
         subprocess.run(
             [sys.executable, "-m", "compileall", "-q", "hdrlab", "tests"], cwd=tree, check=True
         )
-    if (data := ROOT.parent / "shared").exists():
+    data = ROOT.parent / "shared"
+    if data.exists():
         (folder / "shared").symlink_to(data)
     return trees
 
@@ -173,42 +177,48 @@ def fates(files: Sequence[str]) -> list[Fate]:
     drawn = [every[k] for k in sorted(order[:MUTANTS])]
     with tempfile.TemporaryDirectory(prefix="hdrlab-mutation-") as scratch:
         folder = Path(scratch).resolve()
-        trees, tests = copies(folder, PROCESSES), quick_tier()
+        trees = copies(folder, PROCESSES)
+        tests = quick_tier()
         running: Queue[Forked] = Queue()
         started = [Forked(tree) for tree in trees]
         try:
-            for one in started:
-                running.put(one)
+            for worker in started:
+                running.put(worker)
                 some = within(sorted(tests.seconds), tests.seconds, 20)
-                if code := one.run(some, 600):
+                if code := worker.run(some, 600):
                     raise RuntimeError(f"tests end with {code} before anything is changed")
             with ThreadPoolExecutor(PROCESSES) as pool:
                 work = pool.map(lambda mutant: fate(mutant, running, tests), drawn)
                 return list(tqdm(work, total=len(drawn), desc="mutants", leave=False, disable=None))
         finally:
-            for one in started:
-                one.end()
+            for worker in started:
+                worker.end()
 
 
-def table(found: list[Fate]) -> str:
+def table(results: list[Fate]) -> str:
     """Return a line a room, and one for each survivor."""
     lines = [f"  {'room':<28}{'mutants':>9}{'killed':>8}"]
     rooms: dict[str, list[Fate]] = {}
-    for one in found:
-        rooms.setdefault("/".join(one.mutant.file.split("/")[1:-1])[:27] or "(top)", []).append(one)
+    for result in results:
+        rooms.setdefault("/".join(result.mutant.file.split("/")[1:-1])[:27] or "(top)", []).append(
+            result
+        )
     for room, own in sorted(rooms.items()):
-        killed = sum(one.killed for one in own)
+        killed = sum(result.killed for result in own)
         lines.append(f"  {room:<28}{len(own):>9}{killed:>8}")
-    left = [one for one in found if not one.killed]
-    lines += ["  not seen:", *(f"  {one.mutant.said} ({one.tests} tests)" for one in left)]
+    left = [result for result in results if not result.killed]
+    lines += ["  not seen:", *(f"  {result.mutant.said} ({result.tests} tests)" for result in left)]
     return "\n".join(lines)
 
 
 def figures(files: Sequence[str]) -> dict[str, Any]:
     """Print the table of mutants of some files, and return how many the tests see."""
-    found = fates(files)
-    print(table(found), flush=True)
-    return {"mutants": len(found), CLOSE: 100 * sum(one.killed for one in found) / len(found)}
+    results = fates(files)
+    print(table(results), flush=True)
+    return {
+        "mutants": len(results),
+        CLOSE: 100 * sum(result.killed for result in results) / len(results),
+    }
 
 
 def lessons(_: Path) -> dict[str, Any]:
@@ -227,8 +237,8 @@ def grader(_: Path) -> dict[str, Any]:
     return figures(
         [
             str(path.relative_to(ROOT))
-            for one in GRADER
-            for path in ROOT.glob(f"hdrlab/course/{one}")
+            for name in GRADER
+            for path in ROOT.glob(f"hdrlab/course/{name}")
         ]
     )
 

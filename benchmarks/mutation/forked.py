@@ -78,8 +78,8 @@ def main() -> None:
     for name in COMMON:
         importlib.import_module(name)
     for line in sys.stdin:
-        asked = json.loads(line)
-        print(ran(tree, asked["tests"], asked["seconds"]), flush=True)
+        request = json.loads(line)
+        print(ran(tree, request["tests"], request["seconds"]), flush=True)
 
 
 if __name__ == "__main__":

@@ -50,7 +50,8 @@ class Known(NamedTuple):
 
 def known(tree: Path, folder: Path) -> Known:
     """Return what a run of the quick tier in a tree tells; RuntimeError where a test fails."""
-    data, results = folder / "coverage", folder / "quick.xml"
+    data = folder / "coverage"
+    results = folder / "quick.xml"
     command = [sys.executable, "-m", "pytest", "--tier=quick", "-q", f"--junitxml={results}"]
     command += [
         "--cov=hdrlab",
@@ -69,11 +70,11 @@ def known(tree: Path, folder: Path) -> Known:
     seconds: dict[str, float] = {}
     for case in ET.parse(results).iter("testcase"):
         seconds[f"{case.get('classname')}::{case.get('name')}"] = float(case.get("time", 0))
-    found = coverage.CoverageData(str(data))
-    found.read()
+    coverage_data = coverage.CoverageData(str(data))
+    coverage_data.read()
     lines: dict[str, dict[int, set[str]]] = {}
-    for file in found.measured_files():
-        contexts = found.contexts_by_lineno(file)
+    for file in coverage_data.measured_files():
+        contexts = coverage_data.contexts_by_lineno(file)
         own: dict[int, set[str]] = defaultdict(set)
         for line, names in contexts.items():
             own[line] |= {name.rpartition("|")[0] for name in names if "|" in name}
@@ -87,7 +88,8 @@ def known(tree: Path, folder: Path) -> Known:
 def _junit(address: str) -> str:
     """Return an address in the form in which results name it."""
     file, _, rest = address.partition("::")
-    path, (*classes, name) = file.removesuffix(".py").replace("/", "."), _parts(rest)
+    path = file.removesuffix(".py").replace("/", ".")
+    *classes, name = _parts(rest)
     return f"{'.'.join([path, *classes])}::{name}"
 
 

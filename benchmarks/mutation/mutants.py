@@ -52,7 +52,8 @@ class Mutant(NamedTuple):
     @property
     def said(self) -> str:
         """Return the change in a line."""
-        old, new = (" ".join(text.split()) for text in (self.old, self.new))
+        old = " ".join(self.old.split())
+        new = " ".join(self.new.split())
         return f"{self.file}:{self.line}:{self.column}: {old} -> {new}"
 
     def applied(self, text: str) -> str:
@@ -66,16 +67,21 @@ def mutants(file: str, text: str) -> list[Mutant]:
     words = text.splitlines(keepends=True)
     lines = [len(line.encode()) for line in words]
     begin = [0, *(sum(lines[:k]) for k in range(1, len(lines) + 1))]
-    raw, found = text.encode(), []
+    raw = text.encode()
+    found_mutants = []
     for top in ast.parse(text).body:
-        first, last = begin[top.lineno - 1], begin[top.end_lineno or 0]
+        first = begin[top.lineno - 1]
+        last = begin[top.end_lineno or 0]
         for node, new in changes(top):
             start = begin[node.lineno - 1] + node.col_offset
             end = begin[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
-            old, line = raw[start:end].decode(), words[node.lineno - 1].strip()
+            old = raw[start:end].decode()
+            line = words[node.lineno - 1].strip()
             if old != new and compiles((raw[first:start] + new.encode() + raw[end:last]).decode()):
-                found.append(Mutant(file, node.lineno, node.col_offset, line, start, end, old, new))
-    return sorted(set(found), key=lambda one: (one.start, one.end, one.new))
+                found_mutants.append(
+                    Mutant(file, node.lineno, node.col_offset, line, start, end, old, new)
+                )
+    return sorted(set(found_mutants), key=lambda mutant: (mutant.start, mutant.end, mutant.new))
 
 
 def compiles(text: str) -> bool:
@@ -145,5 +151,7 @@ def instead(node: ast.expr | ast.stmt) -> Iterator[str]:
 def of(root: Path, files: list[str]) -> list[Mutant]:
     """Return the mutants of files of a repository."""
     return [
-        one for file in files for one in mutants(file, (root / file).read_text(encoding="utf8"))
+        mutant
+        for file in files
+        for mutant in mutants(file, (root / file).read_text(encoding="utf8"))
     ]

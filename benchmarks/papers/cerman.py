@@ -32,10 +32,13 @@ from hdrlab.response import grossberg
 from hdrlab.response.mitsunaga import curve
 
 TIMES = 4.0 ** np.arange(6)  # six exposures, 2 stops apart
-SAMPLES, SMOOTHNESS = 200, 50.0  # the paper does not say which
+# the paper does not say which
+SAMPLES = 200
+SMOOTHNESS = 50.0
 SEEDS = tuple(range(20))
 MAPS = ("city", "esplanade", "hall", "lobby", "studio", "venice")
-HIS, OURS = "his scheme, lowest and highest of 20", "ours, lowest and highest of 20"
+HIS = "his scheme, lowest and highest of 20"
+OURS = "ours, lowest and highest of 20"
 
 
 class Figure3(NamedTuple):
@@ -96,7 +99,8 @@ def figure3(E: ArrayLike | None = None, *, rng: int = 0) -> Figure3:
     G = irradiance(E)
     clean = camera.shoot(G, TIMES, camera.Camera(response="cubic"), rng=rng)
     noisy = camera.shoot(G, TIMES, camera.Camera(response="cubic", gray_noise=1.0), rng=rng)
-    hat, gaussian = weights.cut(weights.hat()), weights.cut(weights.gaussian(), below=0.02)
+    hat = weights.cut(weights.hat())
+    gaussian = weights.cut(weights.gaussian(), below=0.02)
     cut = {name: gaussian if name == "Debevec, histograms" else hat for name in METHODS}
     return Figure3(
         {name: error(name, clean, w) for name, w in PLAIN.items()},
@@ -141,8 +145,8 @@ def curves(_: Path) -> Mapping[str, ArrayLike]:
 
 def extremes(E: Callable[[int], Array], scheme: str, seeds: Sequence[int] = SEEDS) -> list[float]:
     """Return the lowest and the highest ratio of the darkest pair, over the seeds."""
-    found = [darkest_pair(E(seed), scheme=scheme, rng=seed) for seed in seeds]
-    return [min(found), max(found)]
+    errors = [darkest_pair(E(seed), scheme=scheme, rng=seed) for seed in seeds]
+    return [min(errors), max(errors)]
 
 
 def synthetic_pairs(_: Path) -> Mapping[str, ArrayLike]:
@@ -152,12 +156,13 @@ def synthetic_pairs(_: Path) -> Mapping[str, ArrayLike]:
 
 def real_pairs(folder: Path, *, seeds: Sequence[int] = SEEDS) -> Mapping[str, ArrayLike]:
     """Return the ratios in measured radiance maps."""
-    place, found = real(folder, "hdri_cc0"), {}
+    place = real(folder, "hdri_cc0")
+    errors = {}
     for name in MAPS:
         G = irradiance(read_radiance(place / f"{name}.hdr"))
         for who, scheme in ((HIS, "paper"), (OURS, "mid-step")):
-            found[f"{name}, {who}"] = extremes(lambda seed, G=G: G, scheme, seeds)  # type: ignore[misc]
-    return found
+            errors[f"{name}, {who}"] = extremes(lambda seed, G=G: G, scheme, seeds)  # type: ignore[misc]
+    return errors
 
 
 ROWS = (

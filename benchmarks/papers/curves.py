@@ -29,14 +29,16 @@ from hdrlab.response import families, self_calibration
 
 Float = NDArray[np.float64]
 Method = Callable[[Bracket], Float]
-SHAPE, FRAMES, STOPS, NOISE, OFF = (128, 192), 5, 2.0, 1.0, 0.1
+SHAPE = (128, 192)
+FRAMES = 5
+STOPS = 2.0
+NOISE = 1.0
+OFF = 0.1
 DEFAULT = "debevec"
 # smoothness for times that are still off by a little: they bend the curve where frames meet
 STIFF = 100.0
-BEST, ESTIMATED = (
-    "debevec, smoothness 100, mitsunaga's ratios",
-    "debevec, smoothness 100, estimated times",
-)
+BEST = "debevec, smoothness 100, mitsunaga's ratios"
+ESTIMATED = "debevec, smoothness 100, estimated times"
 
 
 @cache
@@ -64,18 +66,20 @@ def named(name: str, bracket: Bracket) -> Float:
 
 def by_ratios(bracket: Bracket) -> Float:
     """Return g by stiff least squares, with ratios from self-calibration of order 5 where it can tell."""
-    images, times = bracket.images, bracket.times
+    images = bracket.images
+    times = bracket.times
     try:
         R = self_calibration.calibrate(images, times, order=5).R
     except ValueError:  # no pixels lie well in two neighbouring frames
         return debevec.recover(images, times, smoothness=STIFF)
-    found = np.cumprod(np.concatenate([[1], 1 / R]))
-    return debevec.recover(images, found * times[0], smoothness=STIFF)
+    relative_times = np.cumprod(np.concatenate([[1], 1 / R]))
+    return debevec.recover(images, relative_times * times[0], smoothness=STIFF)
 
 
 def by_estimate(bracket: Bracket) -> Float:
     """Return g by stiff least squares, with times estimated as the pipeline does."""
-    images, times = bracket.images, bracket.times
+    images = bracket.images
+    times = bracket.times
     return debevec.recover(images, timing.estimate_times(images, times).times, smoothness=STIFF)
 
 
@@ -86,17 +90,20 @@ def methods(*others: str) -> dict[str, Method]:
     return every | {name: own[name] for name in others}
 
 
-def errors(one: tuple[int, Float, Float], used: dict[str, Method], off: float) -> dict[str, float]:
+def errors(
+    curve: tuple[int, Float, Float], used: dict[str, Method], off: float
+) -> dict[str, float]:
     """Return method -> error on the curve (k, exposure, brightness); NaN where it refuses."""
-    k, exposure, brightness = one
-    bracket, found = photographs(exposure, brightness, off=off, k=k), {}
+    k, exposure, brightness = curve
+    bracket = photographs(exposure, brightness, off=off, k=k)
+    errors_found = {}
     true = families.invert_curves(exposure, brightness)[0]
     for name, method in used.items():
         try:
-            found[name] = float(response_rmse(method(bracket), true)[0])
+            errors_found[name] = float(response_rmse(method(bracket), true)[0])
         except ValueError:
-            found[name] = float("nan")
-    return found
+            errors_found[name] = float("nan")
+    return errors_found
 
 
 def compared(
@@ -105,14 +112,14 @@ def compared(
     """Return median, 95 % and worst error of each method, and what it refused."""
     exposure, brightness = measured_curves(folder)
     items = [(k, exposure[k], brightness[k]) for k in which]
-    each = along(partial(errors, used=used, off=off), items, "curves")
-    found: dict[str, ArrayLike] = {}
+    errors_of_curves = along(partial(errors, used=used, off=off), items, "curves")
+    summary: dict[str, ArrayLike] = {}
     for name in used:
-        own = np.array([one[name] for one in each])
-        found[name] = spread(own[~np.isnan(own)])
+        own = np.array([values[name] for values in errors_of_curves])
+        summary[name] = spread(own[~np.isnan(own)])
         if refused := int(np.isnan(own).sum()):
-            found[f"{name}, brackets refused"] = refused
-    return found
+            summary[f"{name}, brackets refused"] = refused
+    return summary
 
 
 def exact(folder: Path) -> Mapping[str, ArrayLike]:

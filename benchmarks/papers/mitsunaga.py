@@ -23,10 +23,13 @@ from hdrlab.show.plots.lectures import ambiguity
 
 Float = NDArray[np.float64]
 STATED = np.full(3, 0.5)
-CANON, CANON_STATED = np.array([0.419, 0.292, 0.570, 0.512]), np.array([0.5, 0.25, 0.5, 0.5])
+CANON = np.array([0.419, 0.292, 0.570, 0.512])
+CANON_STATED = np.array([0.5, 0.25, 0.5, 0.5])
 TRUST = 0.058  # standard deviation of ln R where R is uniform in 0.45 ... 0.55
-SEED, OTHER_SEEDS = 0, tuple(range(1, 11))
-PAPER, TURNS = "the paper's scheme, worst mean error, %", "its turns, at most"
+SEED = 0
+OTHER_SEEDS = tuple(range(1, 11))
+PAPER = "the paper's scheme, worst mean error, %"
+TURNS = "its turns, at most"
 OURS = "ours: median, 95 %, worst, %"
 
 
@@ -54,25 +57,25 @@ def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trial
     """
     rng = np.random.default_rng(seed)
     drawn = [ambiguity.draw_trial(rng) for _ in range(trials)]
-    runs = [paper_states(one) for one in drawn]
+    runs = [paper_states(trial) for trial in drawn]
     paper = [
-        ambiguity.mean_error(states[-1].c[0], one.c)
-        for states, one in zip(runs, drawn, strict=True)
+        ambiguity.mean_error(states[-1].c[0], trial.c)
+        for states, trial in zip(runs, drawn, strict=True)
     ]
     better = along(marginal_error, drawn, f"seed {seed}") if ours else []
     return Trials(np.array(paper), np.array([len(states) for states in runs]), np.array(better))
 
 
-def paper_states(one: ambiguity.Trial) -> list[mitsunaga.Fit]:
+def paper_states(trial: ambiguity.Trial) -> list[mitsunaga.Fit]:
     """Return the paper's scheme, turn by turn, from ratios of 0.5."""
-    return list(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
+    return list(mitsunaga.fit_steps(average(trial.Z)[None], STATED, 5))
 
 
-def marginal_error(one: ambiguity.Trial) -> float:
+def marginal_error(trial: ambiguity.Trial) -> float:
     """Return the error of marginal maximum likelihood, from where the paper's scheme stopped."""
-    start = paper_states(one)[-1]
+    start = paper_states(trial)[-1]
     return ambiguity.mean_error(
-        marginal.fit(one.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, one.c
+        marginal.fit(trial.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, trial.c
     )
 
 
@@ -102,7 +105,8 @@ def scan_valley(
     draw = np.random.default_rng(rng)
     E = 10 ** draw.uniform(-2, 0, 1000)
     M = polynomial.brightness(E[:, None] * [ratio, 1], c) + sigma * draw.standard_normal((1000, 2))
-    order, R = len(c) + 1, np.linspace(0.3, 0.95, 261)
+    order = len(c) + 1
+    R = np.linspace(0.3, 0.95, 261)
     error = ambiguity.scan_ratios(M, R, order)
     inner = (error[1:-1] < error[:-2]) & (error[1:-1] < error[2:])
     return Valley(R, error, R[1:-1][inner], search_ratio(M, start, order))
@@ -115,9 +119,9 @@ def figure4(*, seed: int = SEED, sigma: float = 0.0) -> Valley:
 
 def canon(*, seed: int = SEED) -> tuple[Float, Float]:
     """Return the ratios (4,) of the Canon as the paper's scheme and ours find them, from the stated ones."""
-    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
-    paper = last(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))
-    return paper.R, marginal.fit(one.Z, paper.c[0], paper.R).R
+    trial = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
+    paper = last(mitsunaga.fit_steps(average(trial.Z)[None], CANON_STATED, 5))
+    return paper.R, marginal.fit(trial.Z, paper.c[0], paper.R).R
 
 
 def kept(t: int, *, seed: int = SEED, side: int = 200, sigma: float = 0.01) -> float:
@@ -128,26 +132,33 @@ def kept(t: int, *, seed: int = SEED, side: int = 200, sigma: float = 0.01) -> f
 
 def cameras(_: Path) -> Mapping[str, ArrayLike]:
     """Return what 100 random cameras give."""
-    found = section5()
-    return {PAPER: found.paper.max(), TURNS: found.turns.max(), OURS: spread(found.ours)}
+    errors = section5()
+    return {PAPER: errors.paper.max(), TURNS: errors.turns.max(), OURS: spread(errors.ours)}
 
 
 def other_seeds(_: Path) -> Mapping[str, ArrayLike]:
     """Return what ten times 100 others give: the worst seed's figures, and each seed's."""
-    each = {seed: section5(seed=seed) for seed in OTHER_SEEDS}
-    spreads = {f"seed {seed}, {OURS}": spread(found.ours) for seed, found in each.items()}
+    errors = {seed: section5(seed=seed) for seed in OTHER_SEEDS}
+    spreads = {
+        f"seed {seed}, {OURS}": spread(spread_of_seed.ours)
+        for seed, spread_of_seed in errors.items()
+    }
     return {
-        f"worst seed, {PAPER}": max(found.paper.max() for found in each.values()),
+        f"worst seed, {PAPER}": max(
+            spread_of_seed.paper.max() for spread_of_seed in errors.values()
+        ),
         f"worst seed, {OURS}": np.max(list(spreads.values()), axis=0),
-        "each seed, the paper's scheme, %": [found.paper.max() for found in each.values()],
+        "each seed, the paper's scheme, %": [
+            spread_of_seed.paper.max() for spread_of_seed in errors.values()
+        ],
         **spreads,
     }
 
 
 def two_frames(_: Path) -> Mapping[str, ArrayLike]:
     """Return what figure 4 shows."""
-    found = figure4()
-    return {"ratio found": found.found, "local minima along the ratio": found.minima}
+    errors = figure4()
+    return {"ratio found": errors.found, "local minima along the ratio": errors.minima}
 
 
 def canon_ratios(_: Path) -> Mapping[str, ArrayLike]:

@@ -39,12 +39,16 @@ from hdrlab.pipeline import recovery
 
 Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
-GAMMA, BRIGHTEST, SIGMA, WHITE, BLACK = 2.2, 220, 0.005, 1.05, 0.0
-RAMP, LINES = 100, 300
-FRAMES, OFF = (
-    4,
-    (0.05, 0.1),
-)  # of Mitsunaga and Nayar's method: photographs, and how far ratios are off
+GAMMA = 2.2
+BRIGHTEST = 220
+SIGMA = 0.005
+WHITE = 1.05
+BLACK = 0.0
+RAMP = 100
+LINES = 300
+# of Mitsunaga and Nayar's method: photographs, and how far ratios are off
+FRAMES = 4
+OFF = (0.05, 0.1)
 OUTLIERS = 0.2  # of its sets: the paper removed two of ten
 
 
@@ -61,11 +65,11 @@ def measured(exposure: Float, brightness: Float) -> Curve:
     return lambda X: np.interp(X, exposure, brightness)
 
 
-def truth(f: Curve, found: InverseResponse) -> InverseResponse:
+def truth(f: Curve, recovered: InverseResponse) -> InverseResponse:
     """Return f^-1 over the brightnesses of `found`; in the middle of the exposures where f is flat."""
     X = np.linspace(0, 1, 1 << 16)
     M, first, counts = np.unique(f(X), return_index=True, return_counts=True)
-    at = np.linspace(found.M[0], found.M[-1], TABLE_SIZE)
+    at = np.linspace(recovered.M[0], recovered.M[-1], TABLE_SIZE)
     return InverseResponse(
         at, np.interp(at, M, (X[first] + X[first + counts - 1]) / 2), np.ones(0), np.ones(0)
     )
@@ -108,10 +112,13 @@ def blurred(
     return photograph(f, np.tile(BLACK + (WHITE - BLACK) * share, (lines, 1)), rng)
 
 
-def errors(cameras: Sequence[Curve], found: Sequence[InverseResponse]) -> Errors:
+def errors(cameras: Sequence[Curve], recovered: Sequence[InverseResponse]) -> Errors:
     """Return the Errors of the curves found for the cameras."""
     apart = np.stack(
-        [difference(one, truth(f, one)) for f, one in zip(cameras, found, strict=True)]
+        [
+            difference(response, truth(f, response))
+            for f, response in zip(cameras, recovered, strict=True)
+        ]
     )
     return Errors(np.sqrt(np.mean(apart**2, axis=1)), np.abs(apart).max(axis=1), apart)
 
@@ -125,10 +132,10 @@ def by_display(
     cameras: Sequence[Curve], *, join: Callable[..., InverseResponse] = joining.join, seed: int = 0
 ) -> Errors:
     """Return the Errors of the display's method, one photograph per camera."""
-    found = [
+    responses = [
         join(display_blends(f, np.random.default_rng([seed, k]))) for k, f in enumerate(cameras)
     ]
-    return errors(cameras, found)
+    return errors(cameras, responses)
 
 
 def by_motion_blur(
@@ -139,41 +146,40 @@ def by_motion_blur(
     lines: int = LINES,
 ) -> Errors:
     """Return the Errors of the method by motion blur, one photograph per camera, all its ramps together."""
-    found = []
+    responses = []
     for k, f in enumerate(cameras):
         image = blurred(f, np.random.default_rng([seed, k]), lines=lines)
-        found.append(
+        responses.append(
             motion_blur.join(image)
             if join is None
             else join(motion_blur.read_blends(image, motion_blur.find_ramps(image)))
         )
-    return errors(cameras, found)
+    return errors(cameras, responses)
 
 
 def without_outliers(sets: Errors) -> Errors:
     """Return the Errors but for the worst of them, as the paper does for Mitsunaga and Nayar's method."""
     kept = np.argsort(sets.rmse)[: len(sets.rmse) - int(OUTLIERS * len(sets.rmse))]
-    return Errors(*(one[kept] for one in sets))
+    return Errors(*(values[kept] for values in sets))
 
 
 def self_calibrated(cameras: Sequence[Curve], *, off: float, seed: int = 0) -> Errors:
     """Return the Errors of Mitsunaga and Nayar's method, one bracket per camera, its ratios off by `off`."""
-    found, stated = [], 2.0 ** np.arange(FRAMES)
+    responses = []
+    stated = 2.0 ** np.arange(FRAMES)
     for k, f in enumerate(cameras):
         rng = np.random.default_rng([seed, k])
-        E, R = (
-            10 ** rng.uniform(-2, 0, (100, 100)),
-            0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1)),
-        )
+        E = 10 ** rng.uniform(-2, 0, (100, 100))
+        R = 0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1))
         exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
         g = recovery.find_validated_method("mitsunaga")(
             np.stack([photograph(f, E * e, rng) for e in exposures]), stated
         )
         at = np.linspace(MIN_BRIGHTNESS, MAX_BRIGHTNESS, TABLE_SIZE)
-        found.append(
+        responses.append(
             normalize(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1))
         )
-    return errors(cameras, found)
+    return errors(cameras, responses)
 
 
 def table1(name: str, *, sets: int = 10, lines: int = LINES, seed: int = 0) -> dict[str, Errors]:
@@ -211,7 +217,8 @@ def figure7(
     Published: below 0.01 in the good example, 0.028 in the bad one; the limit is
     `motion_blur.MAX_RMSE`.
     """
-    f, rng = as_response(name).f, np.random.default_rng(seed)
+    f = as_response(name).f
+    rng = np.random.default_rng(seed)
     pairs = [
         [
             motion_blur.compare_edges(blurred(f, rng, acceleration=a, lines=lines)).rmse

@@ -22,7 +22,8 @@ Float = NDArray[np.float64]
 PLACES = NEUTRAL[
     :5
 ]  # the chart's grays but black: as exposures, where white is at 0.9 of the range
-EMOR, OURS = "RMS with 3, 5, 11 published components", "RMS with 3, 5, 11 components of ours"
+EMOR = "RMS with 3, 5, 11 published components"
+OURS = "RMS with 3, 5, 11 components of ours"
 SAMPLES = "RMS of a response from 5 samples, mean, %"
 
 
@@ -31,7 +32,9 @@ def read_emor(path: Path) -> space.Space:
     parts = re.split(
         r"^\s*\w+(?:\(\d+\))?\s*=", path.read_text(encoding="latin-1"), flags=re.MULTILINE
     )
-    _, mean, *components = (np.array(numbers.split(), np.float64) for numbers in parts[1:])
+    blocks = [np.array(numbers.split(), np.float64) for numbers in parts[1:]]
+    mean = blocks[1]
+    components = blocks[2:]
     return space.Space(mean, np.stack(components), np.ones(len(components)))
 
 
@@ -68,13 +71,14 @@ def five_samples(
     seed: int = 0,
 ) -> Float:
     """Return the RMS (C,) of each curve from five samples and a prior made of the others; held: mean 0.01."""
-    rng, own = np.random.default_rng(seed), np.linspace(0, 1, curves.shape[1])
-    found = []
+    rng = np.random.default_rng(seed)
+    own = np.linspace(0, 1, curves.shape[1])
+    errors = []
     for k, curve in enumerate(curves):
         prior = space.fit_space(without(curves, k, near), count)
         values = np.interp(places, own, curve) + noise * rng.standard_normal(len(places))
-        found.append(space.fit_samples(places, values, prior))
-    return rms(curves, np.array(found))
+        errors.append(space.fit_samples(places, values, prior))
+    return rms(curves, np.array(errors))
 
 
 def measured(folder: Path) -> Float:
@@ -90,15 +94,16 @@ def measured(folder: Path) -> Float:
 
 def components(folder: Path) -> Mapping[str, ArrayLike]:
     """Return what the published components leave of 201 curves, and what those computed here do."""
-    curves, emor = measured(folder), read_emor(real(folder, "crf_curves") / "emor.txt")
+    curves = measured(folder)
+    emor = read_emor(real(folder, "crf_curves") / "emor.txt")
     bases = {EMOR: emor, OURS: space.fit_space(curves, 11)}
     return {who: list(projection(curves, basis).values()) for who, basis in bases.items()}
 
 
 def samples(folder: Path) -> Mapping[str, ArrayLike]:
     """Return how well five samples and the prior give a response."""
-    found = 100 * five_samples(measured(folder))
-    return {SAMPLES: found.mean(), "median, 95 %, worst, %": spread(found)}
+    errors = 100 * five_samples(measured(folder))
+    return {SAMPLES: errors.mean(), "median, 95 %, worst, %": spread(errors)}
 
 
 ROWS = (

@@ -25,21 +25,28 @@ from hdrlab.calibration import motion_blur
 
 Float = NDArray[np.float64]
 WAYS = {"display": setup.by_display, "blur": setup.by_motion_blur}
+WAY_NAMES = {"display": "the display", "blur": "blur"}
 PUBLISHED = {
     "display": (0.012, 0.017, 0.050),
     "blur": (0.012, 0.029, 0.052),
 }  # RMSE, disparity, variance
 LIMITS = {"display": (0.001, 0.003, 0.008), "blur": (0.0005, 0.002, 0.006)}
-RMSE, DISPARITY = "RMSE: median, 95 %, worst", "disparity, mean"
-TRIALS, SETS = 100, 10
+RMSE = "RMSE: median, 95 %, worst"
+DISPARITY = "disparity, mean"
+TRIALS = 100
+SETS = 10
 MITSUNAGA = "0.006, 0.017, 0.061"  # without two outliers of ten sets
-ACCEPTED, REJECTED = "linear motion accepted", "acceleration by 15 % rejected"
+ACCEPTED = "linear motion accepted"
+REJECTED = "acceleration by 15 % rejected"
 
 
 def sets(name: str, *, count: int = SETS) -> dict[str, list[float]]:
     """Return RMSE, disparity and variance of every way for a camera, means over the sets."""
     ways = setup.table1(name, sets=count).items()
-    return {way: [one.rmse.mean(), one.disparity.mean(), setup.variance(one)] for way, one in ways}
+    return {
+        way: [errors.rmse.mean(), errors.disparity.mean(), setup.variance(errors)]
+        for way, errors in ways
+    }
 
 
 def table1(_: Path) -> Mapping[str, ArrayLike]:
@@ -48,11 +55,11 @@ def table1(_: Path) -> Mapping[str, ArrayLike]:
     return {f"{name}, {way}": figures for name, ways in cameras for way, figures in ways.items()}
 
 
-def one_curve(one: tuple[int, Float, Float], way: str) -> tuple[float, float]:
+def one_curve(curve: tuple[int, Float, Float], way: str) -> tuple[float, float]:
     """Return RMSE and disparity of a measured curve (k, exposure, brightness) from one photograph."""
-    k, exposure, brightness = one
-    found = WAYS[way]([setup.measured(exposure, brightness)], seed=k)
-    return float(found.rmse[0]), float(found.disparity[0])
+    k, exposure, brightness = curve
+    recovered = WAYS[way]([setup.measured(exposure, brightness)], seed=k)
+    return float(recovered.rmse[0]), float(recovered.disparity[0])
 
 
 def measured(folder: Path, way: str, *, every: int = 1) -> Mapping[str, ArrayLike]:
@@ -108,7 +115,7 @@ ROWS = (
     *(
         Experiment(
             f"wilburn-{way}",
-            f"a monotone spline over 201 measured curves, by {'the ' * (way == 'display')}{way}",
+            f"a monotone spline over 201 measured curves, by {WAY_NAMES[way]}",
             partial(measured, way=way),
             (
                 at_most(RMSE, *LIMITS[way], published=f"{PUBLISHED[way][0]} (mean)"),

@@ -20,10 +20,11 @@ SMOOTHNESS = 30.0
 HOLDS = {70: (10, 20), 256: (20, 50), 1000: (100, 200)}
 
 
-def case(N: int, folder: Path, one: bool) -> Case:
+def case(N: int, folder: Path, one_thread: bool) -> Case:
     """Return the work at N samples; the dense solution as well where N is large enough to need another."""
     bracket = data.photographs(folder)
-    B, w = np.log(bracket.times), weights.hat()
+    B = np.log(bracket.times)
+    w = weights.hat()
 
     def each_channel(solve: Callable[[Array], Array]) -> Array:
         Z = by_grid(bracket.images, N)
@@ -32,7 +33,7 @@ def case(N: int, folder: Path, one: bool) -> Case:
     def ours() -> Array:
         return each_channel(lambda Z: debevec.gsolve(Z, B, SMOOTHNESS, w).g)
 
-    makers: dict[str, Callable[[], Run]] = {peers.OPENCV: lambda: opencv(bracket, N, one)}
+    makers: dict[str, Callable[[], Run]] = {peers.OPENCV: lambda: opencv(bracket, N, one_thread)}
     if N == max(HOLDS):
         samples = np.moveaxis(by_grid(bracket.images, N), -1, 0)
         systems = [system(Z, B, SMOOTHNESS, w) for Z in samples]
@@ -48,10 +49,11 @@ def error(who: str, g: Any) -> float:
     return data.curve_error(np.log(np.maximum(g, 1e-30)) if who == peers.OPENCV else g)
 
 
-def opencv(bracket: Bracket, N: int, one: bool) -> Run:
+def opencv(bracket: Bracket, N: int, one_thread: bool) -> Run:
     """Return CalibrateDebevec, which chooses a grid of pixels by itself."""
-    cv2 = peers.opencv(one)
-    frames, times = list(bracket.images), bracket.times.astype(np.float32)
+    cv2 = peers.opencv(one_thread)
+    frames = list(bracket.images)
+    times = bracket.times.astype(np.float32)
     return lambda: cv2.createCalibrateDebevec(N, SMOOTHNESS).process(frames, times)
 
 

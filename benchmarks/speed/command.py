@@ -34,21 +34,21 @@ RADIUS = 16
 SIZES = {"12 MP": (1, 1), "24 MP": (1, 2), "48 MP": (2, 2)}
 
 
-def case(folder: Path, one: bool) -> Case:
+def case(folder: Path, one_thread: bool) -> Case:
     """Return the work; the files that were written tell how far they are from the truth."""
     photographs = folder / "jpeg"
     write_photographs(photographs, folder)
 
     def run(command: list[str], who: str) -> Usage:
         files = [str(folder / f"{who}.hdr"), "--picture", str(folder / f"{who}.png")]
-        return process([sys.executable, *command, *files], one=one)
+        return process([sys.executable, *command, *files], one_thread=one_thread)
 
     times = folder / "times.csv"
     ours = ["-m", "hdrlab", "assemble", str(photographs), "--times", str(times), "-o"]
     script = [str(ROOT / "benchmarks" / "opencv_assemble.py"), str(photographs), str(times)]
 
     def opencv() -> Run:
-        peers.opencv(one)
+        peers.opencv(one_thread)
         return lambda: run(script, peers.OPENCV)
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
@@ -58,7 +58,7 @@ def case(folder: Path, one: bool) -> Case:
     )
 
 
-def growing(folder: Path, one: bool) -> Case:
+def growing(folder: Path, one_thread: bool) -> Case:
     """Return the work at every size of SIZES, by the command alone."""
     write_photographs(folder / "jpeg", folder)
     runs: dict[str, Run] = {}
@@ -75,7 +75,7 @@ def growing(folder: Path, one: bool) -> Case:
             str(folder / "times.csv"),
             *files,
         ]
-        runs[size] = partial(process, [sys.executable, *command], one=one)
+        runs[size] = partial(process, [sys.executable, *command], one_thread=one_thread)
         reads[size] = 3 * data.FRAMES * data.LARGE[0] * data.LARGE[1] * down * across
     return Case(runs, {}, reads=reads)
 
@@ -107,7 +107,8 @@ def write_photographs(photographs: Path, folder: Path) -> None:
 
 def error(folder: Path, who: str) -> float:
     """Return the error of a map on the rectangle that all photographs show, placed as in the middle one."""
-    E, moves = rgbe.read(folder / f"{who}.hdr"), data.moves(RADIUS)
+    E = rgbe.read(folder / f"{who}.hdr")
+    moves = data.moves(RADIUS)
     top, left = moves.max(axis=0)
     bottom, right = -moves.min(axis=0)
     shown = (slice(top, -bottom or None), slice(left, -right or None))
@@ -132,7 +133,8 @@ def _moved(images: Array, moves: Array, shown: tuple[slice, slice]) -> Array:
 
 def memory_growth(results: Results) -> float | None:
     """Return the peak memory of 48 MP over four times that of 12 MP."""
-    large, small = results["48 MP"].megabytes, results["12 MP"].megabytes
+    large = results["48 MP"].megabytes
+    small = results["12 MP"].megabytes
     return large / (4 * small) if large and small else None
 
 

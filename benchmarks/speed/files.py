@@ -17,11 +17,14 @@ from hdrlab.io.maps import exr, pfm, rgbe
 Peer = Callable[[Path, Array, bool], Run]
 
 
-def reading(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one: bool) -> Case:
+def reading(
+    form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one_thread: bool
+) -> Case:
     """Return the work of reading what hdrlab wrote; the error is against what the peer reads."""
-    E, path = data.scene(folder), folder / f"read{suffix}"
+    E = data.scene(folder)
+    path = folder / f"read{suffix}"
     form.write(path, E)
-    theirs, missing = peers.present({peer: lambda: make(path, E, one)})
+    theirs, missing = peers.present({peer: lambda: make(path, E, one_thread)})
     same = upright(peer, theirs[peer]()) if theirs else None
 
     def error(who: str, result: Any) -> float | None:
@@ -30,10 +33,13 @@ def reading(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
     return Case({OURS: lambda: form.read(path)} | theirs, missing, error, least=path.read_bytes)
 
 
-def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one: bool) -> Case:
+def writing(
+    form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one_thread: bool
+) -> Case:
     """Return the work of writing; the error is the size of the file, against the peer's."""
-    E, paths = data.scene(folder), {who: folder / f"write-{who}{suffix}" for who in (OURS, peer)}
-    theirs, missing = peers.present({peer: lambda: make(paths[peer], E, one)})
+    E = data.scene(folder)
+    paths = {who: folder / f"write-{who}{suffix}" for who in (OURS, peer)}
+    theirs, missing = peers.present({peer: lambda: make(paths[peer], E, one_thread)})
     for run in theirs.values():
         run()
 
@@ -57,19 +63,20 @@ def upright(who: str, E: Array) -> Array:
     return E[..., ::-1] if who == peers.OPENCV else E
 
 
-def opencv_read(path: Path, E: Array, one: bool) -> Run:
+def opencv_read(path: Path, E: Array, one_thread: bool) -> Run:
     """Return imread."""
-    cv2 = peers.opencv(one)
+    cv2 = peers.opencv(one_thread)
     return lambda: cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
 
 
-def opencv_write(path: Path, E: Array, one: bool) -> Run:
+def opencv_write(path: Path, E: Array, one_thread: bool) -> Run:
     """Return imwrite."""
-    cv2, bgr = peers.opencv(one), np.ascontiguousarray(E[..., ::-1])
+    cv2 = peers.opencv(one_thread)
+    bgr = np.ascontiguousarray(E[..., ::-1])
     return lambda: cv2.imwrite(str(path), bgr)
 
 
-def openexr_read(path: Path, E: Array, one: bool) -> Run:
+def openexr_read(path: Path, E: Array, one_thread: bool) -> Run:
     """Return OpenEXR's own reader."""
     module = peers.openexr()
 
@@ -80,7 +87,7 @@ def openexr_read(path: Path, E: Array, one: bool) -> Run:
     return run
 
 
-def openexr_write(path: Path, E: Array, one: bool) -> Run:
+def openexr_write(path: Path, E: Array, one_thread: bool) -> Run:
     """Return OpenEXR's own writer, with the compression that hdrlab takes."""
     module = peers.openexr()
     header = {"compression": module.ZIP_COMPRESSION, "type": module.scanlineimage}

@@ -10,7 +10,7 @@ from benchmarks.rows import OURS, Case, Row, Run, close, faster, smaller
 from hdrlab.fast import mertens
 
 
-def case(folder: Path, one: bool) -> Case:
+def case(folder: Path, one_thread: bool) -> Case:
     """Return the work; its error is the difference from OpenCV's picture but for a thousandth of the pixels.
 
     In these every photograph is gray or flat, none has any weight, and OpenCV lets rounding decide.
@@ -18,7 +18,8 @@ def case(folder: Path, one: bool) -> Case:
     images = data.photographs(folder).images
 
     def opencv() -> Run:
-        cv2, frames = peers.opencv(one), [np.ascontiguousarray(image) for image in images]
+        cv2 = peers.opencv(one_thread)
+        frames = [np.ascontiguousarray(image) for image in images]
         return lambda: cv2.createMergeMertens(1, 1, 1).process(
             frames
         )  # its own default leaves exposedness out

@@ -19,23 +19,27 @@ VECTOR = 8  # floats
 class Filter:
     """The pipeline for pictures of one size, in one thread or in all."""
 
-    def __init__(self, shape: tuple[int, int], one: bool) -> None:
-        self.hl, self.one = peers.halide(), one
-        self.x, self.y, self.k = (self.hl.Var(name) for name in "xyk")
+    def __init__(self, shape: tuple[int, int], one_thread: bool) -> None:
+        self.hl = peers.halide()
+        self.one_thread = one_thread
+        self.x = self.hl.Var("x")
+        self.y = self.hl.Var("y")
+        self.k = self.hl.Var("k")
         self.sizes = [shape]
         for _ in range(pyramid.depth(shape, 2) - 1):
             self.sizes.append(tuple(-(-n // 2) for n in self.sizes[-1]))  # type: ignore[arg-type]
 
     def computed(self, name: str, value: Any, *, samples: bool = False) -> Any:
         """Return a function of x, y (and k) that is computed whole."""
-        found = self.hl.Func(name)
-        found[(self.x, self.y, self.k) if samples else (self.x, self.y)] = value
-        found.compute_root().vectorize(self.x, VECTOR)
-        return found if self.one else found.parallel(self.y)
+        function = self.hl.Func(name)
+        function[(self.x, self.y, self.k) if samples else (self.x, self.y)] = value
+        function.compute_root().vectorize(self.x, VECTOR)
+        return function if self.one_thread else function.parallel(self.y)
 
     def reduced(self, name: str, f: Any, size: tuple[int, int], rest: tuple[Any, ...]) -> Any:
         """Return the next coarser level of f, whose size is given: (1 4 6 4 1) / 16 along both axes."""
-        hl, (H, W) = self.hl, size
+        hl = self.hl
+        H, W = size
 
         def inside(i: Any, n: int) -> Any:  # reflected about the first and the last pixel
             i = hl.i32(hl.abs(i))
@@ -51,12 +55,15 @@ class Filter:
 
     def expanded(self, name: str, f: Any, size: tuple[int, int], rest: tuple[Any, ...]) -> Any:
         """Return f, a level of the given size, at the next finer one."""
-        hl, (H, W) = self.hl, size
+        hl = self.hl
+        H, W = size
 
         def along(v: Any, n: int, at: Callable[[Any], Any]) -> Any:
             i = v / 2  # whole, rounded down
-            before, after = hl.clamp(hl.i32(hl.abs(i - 1)), 0, n - 1), hl.clamp(i + 1, 0, n - 1)
-            even, odd = (at(before) + 6 * at(i) + at(after)) / 8.0, (at(i) + at(after)) / 2.0
+            before = hl.clamp(hl.i32(hl.abs(i - 1)), 0, n - 1)
+            after = hl.clamp(i + 1, 0, n - 1)
+            even = (at(before) + 6 * at(i) + at(after)) / 8.0
+            odd = (at(i) + at(after)) / 2.0
             return hl.select(v % 2 == 0, even, odd)
 
         rows = along(self.y, H, lambda i: f[(self.x, i, *rest)])
@@ -72,17 +79,22 @@ class Filter:
 
     def filtered(self, lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> Any:
         """Return the pipeline, compiled; `realize([W, H])` runs it."""
-        hl, x, y, k = self.hl, self.x, self.y, self.k
-        low, high = float(lL.min()), float(lL.max())
+        hl = self.hl
+        x = self.x
+        y = self.y
+        k = self.k
+        low = float(lL.min())
+        high = float(lL.max())
         spacing = (high - low) / (samples - 1)
         given_low, step, s, power, left = map(hl.f32, (low, spacing, sigma, alpha, beta))
         image = hl.Buffer(lL)
-        given = self.computed("given", image[x, y])
+        input_function = self.computed("given", image[x, y])
         g = given_low + step * hl.f32(k)
-        d = hl.abs(given[x, y] - g)
+        d = hl.abs(input_function[x, y] - g)
         far = s * hl.pow(hl.min(d / s, 1.0), power) + left * hl.max(d - s, 0.0)
-        r = self.computed("r", g + hl.select(given[x, y] > g, far, -far), samples=True)
-        G, R = self.gaussian("g", given), self.gaussian("r", r, samples=True)
+        r = self.computed("r", g + hl.select(input_function[x, y] > g, far, -far), samples=True)
+        G = self.gaussian("g", input_function)
+        R = self.gaussian("r", r, samples=True)
         answer = G[-1]
         for j in reversed(range(len(self.sizes) - 1)):
             detail = R[j][x, y, k] - self.expanded(f"up_{j}", R[j + 1], self.sizes[j + 1], (k,))

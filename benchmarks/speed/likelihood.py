@@ -18,10 +18,13 @@ from hdrlab.pipeline import recovery
 ITERATIONS = 30  # OpenCV's
 
 
-def accurate(folder: Path, one: bool) -> Case:
+def accurate(folder: Path, one_thread: bool) -> Case:
     """Return the response as the pipeline asks for it."""
-    bracket, saved = data.photographs(folder), folder / "robertson.m"
-    theirs, missing = peers.present({peers.PFS: lambda: pfstools(bracket, folder, saved, one)})
+    bracket = data.photographs(folder)
+    saved = folder / "robertson.m"
+    theirs, missing = peers.present(
+        {peers.PFS: lambda: pfstools(bracket, folder, saved, one_thread)}
+    )
 
     def error(who: str, g: Any) -> float:
         return data.curve_error(read_curve(saved) if who == peers.PFS else g)
@@ -34,33 +37,38 @@ def accurate(folder: Path, one: bool) -> Case:
     )
 
 
-def pfstools(bracket: Bracket, folder: Path, saved: Path, one: bool) -> Run:
+def pfstools(bracket: Bracket, folder: Path, saved: Path, one_thread: bool) -> Run:
     """Return pfshdrcalibrate, less what it takes to merge the same frames by a response that is given."""
-    frames, given = peers.pfs_bracket(bracket, folder), folder / "given.m"
-    write_curve(given, data.response())
-    calibrate, merge = ("-c", "robertson", "-s", str(saved)), ("-c", "robertson", "-f", str(given))
-    return peers.pfs_run(["pfshdrcalibrate", *calibrate], frames, one, ("pfshdrcalibrate", *merge))
+    frames = peers.pfs_bracket(bracket, folder)
+    response_file = folder / "given.m"
+    write_curve(response_file, data.response())
+    calibrate = ("-c", "robertson", "-s", str(saved))
+    merge = ("-c", "robertson", "-f", str(response_file))
+    return peers.pfs_run(
+        ["pfshdrcalibrate", *calibrate], frames, one_thread, ("pfshdrcalibrate", *merge)
+    )
 
 
-def all_pixels(folder: Path, one: bool) -> Case:
+def all_pixels(folder: Path, one_thread: bool) -> Case:
     """Return the paper's scheme on all pixels, for so many iterations."""
     bracket = data.photographs(folder)
-    theirs, missing = peers.present({peers.OPENCV: lambda: opencv(bracket, one)})
+    theirs, missing = peers.present({peers.OPENCV: lambda: opencv(bracket, one_thread)})
 
     def ours() -> Array:
         steps = partial(robertson.recover_steps, max_iterations=ITERATIONS, tolerance=0)
         return robertson.recover(bracket.images, bracket.times, choose=every_pixel, steps=steps)
 
-    def error(who: str, found: Any) -> float:
-        return data.curve_error(np.log(np.maximum(found, 1e-30)) if who == peers.OPENCV else found)
+    def error(who: str, curve: Any) -> float:
+        return data.curve_error(np.log(np.maximum(curve, 1e-30)) if who == peers.OPENCV else curve)
 
     return Case({OURS: ours} | theirs, missing, error, bracket.images.nbytes)
 
 
-def opencv(bracket: Bracket, one: bool) -> Run:
+def opencv(bracket: Bracket, one_thread: bool) -> Run:
     """Return CalibrateRobertson; with a threshold of 0 it takes all its iterations."""
-    cv2 = peers.opencv(one)
-    frames, times = list(bracket.images), bracket.times.astype(np.float32)
+    cv2 = peers.opencv(one_thread)
+    frames = list(bracket.images)
+    times = bracket.times.astype(np.float32)
     return lambda: cv2.createCalibrateRobertson(ITERATIONS, 0).process(frames, times)
 
 

@@ -14,7 +14,7 @@ SIMPLEST = "drago"  # one curve for all pixels
 FLOATS = ("--ldrTiff", "32b", "--ldrTiffDeflate", "false")
 
 
-def operator(E: Array, folder: Path, one: bool, name: str, *options: str) -> Run:
+def operator(E: Array, folder: Path, one_thread: bool, name: str, *options: str) -> Run:
     """Return one of its operators, less what the simplest of them takes with the same files.
 
     That takes off reading, colours and writing, and a little too much: the work of the simplest.
@@ -22,7 +22,8 @@ def operator(E: Array, folder: Path, one: bool, name: str, *options: str) -> Run
     program = shutil.which("luminance-hdr-cli")
     if program is None:
         raise peers.Missing("no luminance-hdr-cli on the path (apt install luminance-hdr)")
-    scene, home = folder / "scene.hdr", folder / "home"
+    scene = folder / "scene.hdr"
+    home = folder / "home"
     rgbe.write(scene, E)
     home.mkdir(exist_ok=True)
     start = ["env", f"HOME={home}", "QT_QPA_PLATFORM=offscreen", program, "--load", str(scene)]
@@ -30,7 +31,8 @@ def operator(E: Array, folder: Path, one: bool, name: str, *options: str) -> Run
     def spent(name: str, *options: str) -> Usage:
         picture = folder / f"{name}.tif"
         return process(
-            [*start, "--tmo", name, *options, "--output", str(picture), *FLOATS], one=one
+            [*start, "--tmo", name, *options, "--output", str(picture), *FLOATS],
+            one_thread=one_thread,
         )
 
     return lambda: spent(name, *options).net(spent(SIMPLEST))

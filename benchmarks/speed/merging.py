@@ -15,18 +15,20 @@ from hdrlab.radiance import uncertainty
 from hdrlab.radiance.merge import merge_with_quality
 
 
-def case(folder: Path, one: bool) -> Case:
+def case(folder: Path, one_thread: bool) -> Case:
     """Return the work."""
-    bracket, truth, g = data.photographs(folder), data.scene(folder), data.response()
+    bracket = data.photographs(folder)
+    truth = data.scene(folder)
+    g = data.response()
 
     def ours() -> Array:
         return merge.merge_with_quality(bracket.images, bracket.times, g).E
 
     theirs, missing = peers.present(
         {
-            peers.OPENCV: lambda: opencv(bracket, g, one),
+            peers.OPENCV: lambda: opencv(bracket, g, one_thread),
             peers.COLOUR: lambda: colour_hdri(bracket, g),
-            peers.PFS: lambda: pfstools(bracket, g, folder, one),
+            peers.PFS: lambda: pfstools(bracket, g, folder, one_thread),
         }
     )
 
@@ -38,11 +40,12 @@ def case(folder: Path, one: bool) -> Case:
     return Case({OURS: ours} | theirs, missing, error, bracket.images.nbytes)
 
 
-def opencv(bracket: Bracket, g: Array, one: bool) -> Run:
+def opencv(bracket: Bracket, g: Array, one_thread: bool) -> Run:
     """Return MergeDebevec."""
-    cv2 = peers.opencv(one)
+    cv2 = peers.opencv(one_thread)
     frames = [np.ascontiguousarray(image[..., ::-1]) for image in bracket.images]
-    times, response = bracket.times.astype(np.float32), np.exp(g[:, None]).astype(np.float32)
+    times = bracket.times.astype(np.float32)
+    response = np.exp(g[:, None]).astype(np.float32)
     return lambda: cv2.createMergeDebevec().process(frames, times, response)
 
 
@@ -61,11 +64,12 @@ def colour_hdri(bracket: Bracket, g: Array) -> Run:
     return run
 
 
-def pfstools(bracket: Bracket, g: Array, folder: Path, one: bool) -> Run:
+def pfstools(bracket: Bracket, g: Array, folder: Path, one_thread: bool) -> Run:
     """Return pfshdrcalibrate, the response given."""
-    frames, response = peers.pfs_bracket(bracket, folder), folder / "response.m"
+    frames = peers.pfs_bracket(bracket, folder)
+    response = folder / "response.m"
     write_curve(response, g)
-    return peers.pfs_run(["pfshdrcalibrate", "-f", str(response)], frames, one)
+    return peers.pfs_run(["pfshdrcalibrate", "-f", str(response)], frames, one_thread)
 
 
 PLAIN = "the plain merge"
@@ -73,9 +77,11 @@ PLAIN = "the plain merge"
 ELECTRONS = {"N": 10_000.0, "R": 5.0}
 
 
-def deviation_case(folder: Path, one: bool) -> Case:
+def deviation_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of the mean by inverse variance with its standard deviation, beside the plain mean."""
-    bracket, truth, g = data.photographs(folder), data.scene(folder), data.response()
+    bracket = data.photographs(folder)
+    truth = data.scene(folder)
+    g = data.response()
 
     def ours() -> Array:
         return uncertainty.merge_with_deviation(bracket.images, bracket.times, g, **ELECTRONS).E

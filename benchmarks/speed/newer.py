@@ -25,21 +25,24 @@ def agree(limit: float, unit: str) -> Hold:
     """Hold at most this difference between hdrlab's answer and that of any peer."""
 
     def figure(results: Results) -> float | None:
-        return max((one.error for one in results.values() if one.error is not None), default=None)
+        return max(
+            (result.error for result in results.values() if result.error is not None), default=None
+        )
 
     return Hold(f"{unit} of difference", figure, limit)
 
 
-def guided_case(folder: Path, one: bool) -> Case:
+def guided_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of the guided filter on log luminance, its own guide; errors are against each other."""
     lL = logarithm(luminance(data.scene(folder)))
-    radius, epsilon = WINDOW["radius"], WINDOW["epsilon"]
+    radius = WINDOW["radius"]
+    epsilon = WINDOW["epsilon"]
 
     def ours() -> Any:
         return guided.guided(lL, **WINDOW)  # type: ignore[arg-type]
 
     def opencv() -> Run:
-        cv2 = peers.opencv(one)
+        cv2 = peers.opencv(one_thread)
         return lambda: cv2.ximgproc.guidedFilter(lL, lL, radius, epsilon)
 
     def error(who: str, q: Any) -> float | None:
@@ -50,7 +53,7 @@ def guided_case(folder: Path, one: bool) -> Case:
     return Case({OURS: ours} | theirs, missing, error, lL.nbytes)
 
 
-def laplacian_case(folder: Path, one: bool) -> Case:
+def laplacian_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of the local Laplacian filter before its answer is fitted to a display."""
     lL = local_laplacian.log_luminance(luminance(data.scene(folder)))
 
@@ -58,7 +61,7 @@ def laplacian_case(folder: Path, one: bool) -> Case:
         return fast.filtered(lL, **KNOBS)  # type: ignore[arg-type]
 
     def halide() -> Run:
-        answer = Filter(lL.shape, one).filtered(lL, **KNOBS)  # type: ignore[arg-type]
+        answer = Filter(lL.shape, one_thread).filtered(lL, **KNOBS)  # type: ignore[arg-type]
         return lambda: np.asarray(answer.realize([lL.shape[1], lL.shape[0]]))
 
     def error(who: str, answer: Any) -> float | None:
@@ -68,7 +71,7 @@ def laplacian_case(folder: Path, one: bool) -> Case:
     return Case({OURS: ours} | theirs, missing, error, lL.nbytes)
 
 
-def codes_case(folder: Path, one: bool) -> Case:
+def codes_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of coding a picture of 2 megapixels by PQ and by HLG."""
     FD = np.clip(100 * data.scene(folder).astype(np.float64), 0, transfer.BRIGHTEST)
     E = FD / transfer.BRIGHTEST

@@ -24,7 +24,7 @@ REINHARD = "own Reinhard"
 BLUR = 0.02  # of the longer side, a wide Gaussian
 
 
-def bilateral_case(folder: Path, one: bool) -> Case:
+def bilateral_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of Durand's operator; its error is that of the base, against the definition."""
     E = data.scene(folder)
     L = luminance(E)
@@ -37,8 +37,8 @@ def bilateral_case(folder: Path, one: bool) -> Case:
     alike = (*widths, "--tmoDurBase", f"{np.log(50):g}")  # our knobs; theirs are in nats
     theirs, missing = peers.present(
         {
-            peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_durand02"),
-            lhdr.NAME: lambda: lhdr.operator(E, folder, one, "durand", *alike),
+            peers.PFS: lambda: pfstools(E, folder, one_thread, "pfstmo_durand02"),
+            lhdr.NAME: lambda: lhdr.operator(E, folder, one_thread, "durand", *alike),
         }
     )
 
@@ -47,20 +47,21 @@ def bilateral_case(folder: Path, one: bool) -> Case:
             return None
         lL = logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
         sigmas = {"sigma_s": SIGMA_S_FRACTION * max(lL.shape), "sigma_r": 0.4}
-        exact, fast = by_definition(lL, **sigmas).mean, bilateral.bilateral(lL, **sigmas).mean
+        exact = by_definition(lL, **sigmas).mean
+        fast = bilateral.bilateral(lL, **sigmas).mean
         return float(np.sqrt(np.mean((fast - exact) ** 2)))
 
     return Case({OURS: lambda: durand.tonemap(L)} | theirs, missing, error, L.nbytes)
 
 
-def gradient_case(folder: Path, one: bool) -> Case:
+def gradient_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of Fattal's operator; its error is the residual of the Poisson solve."""
     E = data.scene(folder)
     L = luminance(E)
     theirs, missing = peers.present(
         {
-            peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_fattal02"),
-            lhdr.NAME: lambda: lhdr.operator(E, folder, one, "fattal"),
+            peers.PFS: lambda: pfstools(E, folder, one_thread, "pfstmo_fattal02"),
+            lhdr.NAME: lambda: lhdr.operator(E, folder, one_thread, "fattal"),
         }
     )
 
@@ -73,7 +74,7 @@ def gradient_case(folder: Path, one: bool) -> Case:
     return Case({OURS: lambda: fattal.tonemap(L)} | theirs, missing, error, L.nbytes)
 
 
-def histogram_case(folder: Path, one: bool) -> Case:
+def histogram_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of Ward's operator beside our own global Reinhard, both on luminance."""
     L = luminance(data.scene(folder))
     return Case(
@@ -81,13 +82,13 @@ def histogram_case(folder: Path, one: bool) -> Case:
     )
 
 
-def blur_case(folder: Path, one: bool) -> Case:
+def blur_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of a wide Gaussian, the cost of Chiu's scale field."""
     L = luminance(data.scene(folder))
     sigma = BLUR * max(L.shape)
 
     def opencv() -> Run:
-        cv2 = peers.opencv(one)
+        cv2 = peers.opencv(one_thread)
         return lambda: cv2.GaussianBlur(L, (0, 0), sigma)
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
@@ -100,7 +101,7 @@ def blur_case(folder: Path, one: bool) -> Case:
     return Case({OURS: lambda: blur.gaussian(L, sigma)} | theirs, missing, error, L.nbytes)
 
 
-def scale_case(folder: Path, one: bool) -> Case:
+def scale_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of Chiu's whole operator, smoothing passes included, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
     return Case(
@@ -108,7 +109,7 @@ def scale_case(folder: Path, one: bool) -> Case:
     )
 
 
-def brush_case(folder: Path, one: bool) -> Case:
+def brush_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of the Detail Brush over a whole picture, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
     return Case(

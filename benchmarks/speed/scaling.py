@@ -18,16 +18,17 @@ SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}
 Work = tuple[Run, int]  # and the bytes of its input
 
 
-def case(make: Callable[[Path, data.Size, bool], Work], folder: Path, one: bool) -> Case:
+def case(make: Callable[[Path, data.Size, bool], Work], folder: Path, one_thread: bool) -> Case:
     """Return the same work at both sizes."""
-    made = {name: make(folder, size, one) for name, size in SIZES.items()}
+    made = {name: make(folder, size, one_thread) for name, size in SIZES.items()}
     reads = {name: read for name, (_, read) in made.items()}
     return Case({name: run for name, (run, _) in made.items()}, {}, reads=reads)
 
 
-def merging(folder: Path, size: data.Size, one: bool) -> Work:
+def merging(folder: Path, size: data.Size, one_thread: bool) -> Work:
     """Return the merge of seven photographs."""
-    bracket, g = data.photographs(folder, size), data.response()
+    bracket = data.photographs(folder, size)
+    g = data.response()
 
     def work() -> Any:
         return merge.merge_with_quality(bracket.images, bracket.times, g)
@@ -35,19 +36,20 @@ def merging(folder: Path, size: data.Size, one: bool) -> Work:
     return work, bracket.images.nbytes
 
 
-def developing(folder: Path, size: data.Size, one: bool) -> Work:
+def developing(folder: Path, size: data.Size, one_thread: bool) -> Work:
     """Return Reinhard's global operator to 8 bits."""
     E = data.scene(folder, size)
     return lambda: pipeline.develop(E, "reinhard"), E.nbytes
 
 
-def tonemapping(name: str, folder: Path, size: data.Size, one: bool) -> Work:
+def tonemapping(name: str, folder: Path, size: data.Size, one_thread: bool) -> Work:
     """Return an operator, luminance to luminance."""
-    L, tonemap = luminance(data.scene(folder, size)), catalogue.method("tonemap", name)
+    L = luminance(data.scene(folder, size))
+    tonemap = catalogue.method("tonemap", name)
     return lambda: tonemap(L), L.nbytes
 
 
-def fusing(folder: Path, size: data.Size, one: bool) -> Work:
+def fusing(folder: Path, size: data.Size, one_thread: bool) -> Work:
     """Return the fusion of seven photographs."""
     images = data.photographs(folder, size).images
     return lambda: mertens.fuse(images), images.nbytes
@@ -55,7 +57,7 @@ def fusing(folder: Path, size: data.Size, one: bool) -> Work:
 
 def operator(name: str) -> Row:
     """Return the row of an operator of tone mapping; a new one has its row by existing."""
-    holds = (POWER, within("12 MP", MOST.get(name, 300)))
+    holds = (POWER, within("12 MP", MAX_MEGABYTES.get(name, DEFAULT_MAX_MEGABYTES)))
     return Row(
         f"{name}-12",
         f"{name}, 2 and 12 megapixels",
@@ -65,7 +67,8 @@ def operator(name: str) -> Row:
 
 
 POWER = grows("2 MP", "12 MP", data.PIXELS, 1.15)
-MOST = {"fattal": 400, "local_laplacian": 450}  # MB; any other operator is held to 300
+MAX_MEGABYTES = {"fattal": 400, "local_laplacian": 450}
+DEFAULT_MAX_MEGABYTES = 300
 ROWS = (
     Row(
         "merge-12",

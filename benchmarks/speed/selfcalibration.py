@@ -14,21 +14,23 @@ from hdrlab.io.response_files import read_curve
 from hdrlab.response import self_calibration
 
 
-def told(folder: Path, one: bool) -> Case:
+def with_known_order(folder: Path, one_thread: bool) -> Case:
     """Return the work with an order given, as the peer has it."""
-    return case(folder, one, order=6)
+    return case(folder, one_thread, order=6)
 
 
-def chosen(folder: Path, one: bool) -> Case:
+def chosen(folder: Path, one_thread: bool) -> Case:
     """Return the work with the choice of the order in it."""
-    return case(folder, one, order=None)
+    return case(folder, one_thread, order=None)
 
 
-def case(folder: Path, one: bool, order: int | None) -> Case:
+def case(folder: Path, one_thread: bool, order: int | None) -> Case:
     """Return the work."""
     bracket = data.photographs(folder)
     saved = folder / "mitsunaga.m"
-    theirs, missing = peers.present({peers.PFS: lambda: pfstools(bracket, folder, saved, one)})
+    theirs, missing = peers.present(
+        {peers.PFS: lambda: pfstools(bracket, folder, saved, one_thread)}
+    )
 
     def error(who: str, g: Any) -> float:
         return data.curve_error(read_curve(saved) if who == peers.PFS else g)
@@ -42,10 +44,12 @@ def case(folder: Path, one: bool, order: int | None) -> Case:
     )
 
 
-def pfstools(bracket: Bracket, folder: Path, saved: Path, one: bool) -> Run:
+def pfstools(bracket: Bracket, folder: Path, saved: Path, one_thread: bool) -> Run:
     """Return pfshdrcalibrate -c mitsunaga, less what it takes to read the same frames and do nothing."""
     frames = peers.pfs_bracket(bracket, folder)
-    return peers.pfs_run(["pfshdrcalibrate", "-c", "mitsunaga", "-s", str(saved)], frames, one)
+    return peers.pfs_run(
+        ["pfshdrcalibrate", "-c", "mitsunaga", "-s", str(saved)], frames, one_thread
+    )
 
 
 WORK = f"self-calibration from {data.FRAMES} photographs, three channels"
@@ -54,7 +58,7 @@ ROWS = (
     Row(
         "mitsunaga",
         f"{WORK}, order 6",
-        told,
+        with_known_order,
         (faster(100), close(0.5, "% error of the curve", 0.15)),
         ERROR,
     ),

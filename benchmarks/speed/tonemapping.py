@@ -18,12 +18,12 @@ from hdrlab.io.maps import pfm
 from hdrlab.tonemap import reinhard
 
 
-def develop(folder: Path, one: bool) -> Case:
+def develop(folder: Path, one_thread: bool) -> Case:
     """Return the work of the global operator, colours and 8 bits included."""
     E = data.scene(folder)
     plain = plain_picture(E)
     theirs, missing = peers.present(
-        {peers.OPENCV: lambda: opencv(E, one), peers.COLOUR: lambda: colour_hdri(E)}
+        {peers.OPENCV: lambda: opencv(E, one_thread), peers.COLOUR: lambda: colour_hdri(E)}
     )
 
     def error(who: str, picture: Any) -> float | None:
@@ -47,9 +47,9 @@ def plain_picture(E: Array) -> Array:
     return 255 * encode_srgb(np.clip(E * (Ld / L)[..., None], 0, 1))
 
 
-def opencv(E: Array, one: bool) -> Run:
+def opencv(E: Array, one_thread: bool) -> Run:
     """Return TonemapReinhard; it changes its own parameters, so each run takes a new one."""
-    cv2 = peers.opencv(one)
+    cv2 = peers.opencv(one_thread)
     bgr = np.ascontiguousarray(E[..., ::-1])
     return lambda: cv2.convertScaleAbs(cv2.createTonemapReinhard(2.2).process(bgr), alpha=255)
 
@@ -60,12 +60,12 @@ def colour_hdri(E: Array) -> Run:
     return lambda: (np.clip(operator(E), 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8)
 
 
-def dodge(folder: Path, one: bool) -> Case:
+def dodge(folder: Path, one_thread: bool) -> Case:
     """Return the work of dodge and burn, radiance to linear display RGB."""
     E = data.scene(folder)
     truth = true_gaussians(luminance(E))
     theirs, missing = peers.present(
-        {peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_reinhard02", "-s")}
+        {peers.PFS: lambda: pfstools(E, folder, one_thread, "pfstmo_reinhard02", "-s")}
     )
 
     def ours() -> Array:
@@ -88,12 +88,14 @@ def true_gaussians(L: Array) -> Array:
     return last(reinhard.scale_steps(blurred)).adaptation
 
 
-def pfstools(E: Array, folder: Path, one: bool, operator: str, *options: str) -> Run:
+def pfstools(E: Array, folder: Path, one_thread: bool, operator: str, *options: str) -> Run:
     """Return an operator of pfstools, less what it takes to read and write the same frame and do nothing."""
     pfm.write(folder / "scene.pfm", E)
     frame = folder / "scene.pfs"
-    process([peers.pfstools("pfsinpfm"), str(folder / "scene.pfm")], one=one, target=frame)
-    return peers.pfs_run([operator, *options], frame, one)
+    process(
+        [peers.pfstools("pfsinpfm"), str(folder / "scene.pfm")], one_thread=one_thread, target=frame
+    )
+    return peers.pfs_run([operator, *options], frame, one_thread)
 
 
 ROWS = (

@@ -78,7 +78,7 @@ def measure_cost(found: Array, sound: Array) -> float:
     a, b = (
         np.log2(np.maximum(_middle(one, h, w), 1e-9)).astype(np.float32) for one in (sound, found)
     )
-    cv2, moved = opencv(one=True), np.eye(2, 3, dtype=np.float32)
+    cv2, moved = opencv(one_thread=True), np.eye(2, 3, dtype=np.float32)
     with suppress(cv2.error):  # where the two have nothing in common
         _, moved = cv2.findTransformECC(a, b, moved, cv2.MOTION_EUCLIDEAN)
     way = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP

@@ -41,12 +41,18 @@ QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = GradingOptions(TIER, draw=False)
-# questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a
-# submission
-FIVE, USUAL, MOST, LONGEST = examining.MAX_QUESTIONS, 8, 16, 36_000.0
+QUESTIONS_PER_SITTING = examining.MAX_QUESTIONS
+# about as many questions come from a submission
+USUAL_QUESTIONS = 8
+MAX_TASKS = 16
+# for all sittings of a submission
+MAX_SECONDS = 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
-AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
-ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
+AGAIN = "right again, % of questions"
+REFUSED = "refused, % of submissions with five tasks"
+ALIKE = "blind, most alike, %"
+ODD = "blind, least alike, %"
+PLACES = "places of right answers, %"
 
 Question = dict[str, Any]
 
@@ -93,18 +99,18 @@ def examined(
         "photographs": pages.photographs([]),
     }
     made: list[tuple[list[str], list[Question]]] = []
-    with patch.object(grader, "ALL_CHECKS_TIMEOUT_SECONDS", LONGEST):
-        found = list(grader.iter_events(read, homework, CONDITIONS, by=by, **more))
-    for one in found:
-        if "passed" in one:
-            made.append((one["passed"], []))
-        if "fault" in (question := one.get("question", {})):
+    with patch.object(grader, "ALL_CHECKS_TIMEOUT_SECONDS", MAX_SECONDS):
+        events = list(grader.iter_events(read, homework, CONDITIONS, by=by, **more))
+    for event in events:
+        if "passed" in event:
+            made.append((event["passed"], []))
+        if "fault" in (question := event.get("question", {})):
             print(f"  {name}: {question['fault']}", flush=True)
         elif question:
             made[-1][1].append(question)
             if not question.get("again", True):
-                told = f"{question['kind']} of {question['task']}"
-                print(f"  {name}, seed {seeds[len(made) - 1]}: {told} is not right", flush=True)
+                output = f"{question['kind']} of {question['task']}"
+                print(f"  {name}, seed {seeds[len(made) - 1]}: {output} is not right", flush=True)
     return name, made
 
 
@@ -112,17 +118,17 @@ def features(question: dict[str, Any]) -> list[np.ndarray]:
     """Return what somebody sees of each option who does not know the code, as numbers."""
     if "figures" in question:
         return [
-            np.array([float(one) for one in figure["parts"].split(", ")])
+            np.array([float(text) for text in figure["parts"].split(", ")])
             for figure in question["figures"]
         ]
-    said = question.get("texts") or [
-        f"row {one // 8} column {one % 8}" for one in question["marks"]
+    texts = question.get("texts") or [
+        f"row {text // 8} column {text % 8}" for text in question["marks"]
     ]
     words = [
-        set(re.findall(r"\w+|\W", one)) | {f"length {len(one) // 4}"} for one in [*said, ""][:4]
+        set(re.findall(r"\w+|\W", text)) | {f"length {len(text) // 4}"} for text in [*texts, ""][:4]
     ]
     every = sorted(set().union(*words))
-    return [np.array([float(word in one) for word in every]) for one in words]
+    return [np.array([float(word in text) for word in every]) for text in words]
 
 
 def blind(question: dict[str, Any], most: bool) -> float:
@@ -137,33 +143,37 @@ def questions(_folder: Path) -> dict[str, Any]:
     """Return what is found of QUESTIONS questions."""
     every = list(works())
     every = [every[k] for k in np.random.default_rng(1).permutation(len(every))]
-    asked: list[Question] = []
-    refused, whole, seed = 0, 0, SEED
-    while (need := QUESTIONS - len(asked)) > 0:
-        count = -(-need // (USUAL * len(every)))
+    questions_found: list[Question] = []
+    refused = 0
+    whole = 0
+    seed = SEED
+    while (need := QUESTIONS - len(questions_found)) > 0:
+        count = -(-need // (USUAL_QUESTIONS * len(every)))
         seeds = list(range(seed, seed + count))
-        items = [(*one, seeds[: -(-count * len(one[2].sources) // MOST)]) for one in every]
-        items = items[: -(-need // (USUAL * count))]
+        items = [(*item, seeds[: -(-count * len(item[2].sources) // MAX_TASKS)]) for item in every]
+        items = items[: -(-need // (USUAL_QUESTIONS * count))]
         for name, sittings in along(examined, items, f"seeds {seeds[0]} to {seeds[-1]}"):
             for seed, (passed, made) in zip(seeds, sittings, strict=False):
-                asked += made
-                whole += len(passed) >= FIVE
-                if len(passed) >= FIVE > len(made):
+                questions_found += made
+                whole += len(passed) >= QUESTIONS_PER_SITTING
+                if len(passed) >= QUESTIONS_PER_SITTING > len(made):
                     refused += 1
                     print(
                         f"  {name}, seed {seed}: {len(made)} questions of {len(passed)} tasks",
                         flush=True,
                     )
         seed = seeds[-1] + 1
-    kinds = {kind: sum(one["kind"] == kind for one in asked) for kind in examining.KINDS}
+    kinds = {
+        kind: sum(item["kind"] == kind for item in questions_found) for kind in examining.KINDS
+    }
     print("  " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()), flush=True)
-    places = np.bincount([one["right"] for one in asked], minlength=4)
+    places = np.bincount([item["right"] for item in questions_found], minlength=4)
     return {
-        "questions": len(asked),
-        AGAIN: 100 * np.mean([one["again"] for one in asked]),
+        "questions": len(questions_found),
+        AGAIN: 100 * np.mean([item["again"] for item in questions_found]),
         REFUSED: 100 * refused / max(whole, 1),
-        ALIKE: 100 * np.mean([blind(one, True) for one in asked]),
-        ODD: 100 * np.mean([blind(one, False) for one in asked]),
+        ALIKE: 100 * np.mean([blind(item, True) for item in questions_found]),
+        ODD: 100 * np.mean([blind(item, False) for item in questions_found]),
         PLACES: tuple(100 * places / places.sum()),
     }
 

@@ -23,11 +23,13 @@ from hdrlab.course.sandbox.inside import channel, worker
 from hdrlab.course.viva import changed, examining
 
 # seconds and bytes of a call in this process
-PATIENCE, MEMORY = 1, 1 << 32
-# seconds of a call in the sandbox, times a check's, and of the sandbox for a question: no clock
-# decides
-PATIENT, ENOUGH = 3.0, 60
-FIVE = examining.MAX_QUESTIONS
+PATIENCE = 1
+MEMORY = 1 << 32
+# Limits so large that no clock decides about a question: the time of a call in the sandbox, as a
+# multiple of that of a check, and the seconds that the sandbox keeps for a question.
+CALL_TIME_FACTOR = 3.0
+MIN_SECONDS_LEFT = 60
+QUESTIONS_PER_SITTING = examining.MAX_QUESTIONS
 
 Question = dict[str, Any]
 
@@ -46,7 +48,8 @@ class InProcess:
     seconds_left = math.inf
 
     def __init__(self, sources: dict[str, str]) -> None:
-        self.texts, self.functions = dict(sources), dict[str, Any]()
+        self.texts = dict(sources)
+        self.functions = dict[str, Any]()
         self.calls: list[Any] = []
 
     def fresh(self, **sources: str) -> None:
@@ -55,14 +58,14 @@ class InProcess:
         self.functions = {}
 
     def __getattr__(self, task: str) -> Any:
-        def ask(*given: Any, **named: Any) -> Any:
+        def ask(*arguments: Any, **named: Any) -> Any:
             with in_time(), np.errstate(all="ignore"):
                 if task not in self.functions:
                     scope: dict[str, Any] = {"__name__": task}
                     exec(compile(self.texts[task], task, "exec"), scope)
                     self.functions[task] = scope[task]
                 answer = worker.collect_items(
-                    self.functions[task](*deepcopy(given), **deepcopy(named))
+                    self.functions[task](*deepcopy(arguments), **deepcopy(named))
                 )
                 channel.send(Nowhere(), "answer", answer)  # type: ignore[arg-type]  # or it is refused, as there
                 return compare.plain(answer)
@@ -98,15 +101,16 @@ class Twice(examining.QuestionGenerator):
     def question(self, kind: str, max_versions: int) -> Question | None:
         """Return the question; what is wrong with this very code is written down."""
         run: Any = self.run
-        if max_versions > examining.VERSIONS_PER_SEARCH[0] and run.made >= FIVE:
+        if max_versions > examining.VERSIONS_PER_SEARCH[0] and run.made >= QUESTIONS_PER_SITTING:
             return None  # the second search is made where there are fewer
-        self.kind, found = kind, None
+        self.kind = kind
+        question_found = None
         try:
-            found = super().question(kind, max_versions)
+            question_found = super().question(kind, max_versions)
         except Exception as error:
             run._write(question={"fault": f"{kind} of {self.task}: {error!r}"})
-        run.made += found is not None
-        return found
+        run.made += question_found is not None
+        return question_found
 
     def is_reproducible(self, draft: examining.QuestionDraft) -> bool:
         """Return what this process says of a question, and write down what the sandbox says."""
@@ -114,17 +118,17 @@ class Twice(examining.QuestionGenerator):
             return False
         run: Any = self.run
         run.submission, run.other = run.other, run.submission
-        if run.submission.seconds_left < ENOUGH:
+        if run.submission.seconds_left < MIN_SECONDS_LEFT:
             examining.Examining._replace_sandbox(run)
         draft.shown["again"] = super().is_reproducible(draft)
         run.submission, run.other = run.other, run.submission
         return True
 
     def _find_four(self, view: Any, differ: Any) -> examining.QuestionDraft | None:
-        given = hashlib.sha256(pickle.dumps(view.args)).digest()
+        digest = hashlib.sha256(pickle.dumps(view.args)).digest()
 
         def seen(version: changed.Version) -> Any:
-            return self._known((self.kind, given, version.source), lambda: view(version))
+            return self._known((self.kind, digest, version.source), lambda: view(version))
 
         return super()._find_four(seen, differ)
 
@@ -132,10 +136,10 @@ class Twice(examining.QuestionGenerator):
         return bool(self._known(("same", source), lambda: super(Twice, self)._is_same(source)))
 
     def _broken_promises(self, version: changed.Version) -> set[str] | None:
-        found: set[str] | None = self._known(
+        promises: set[str] | None = self._known(
             ("broken", version.source), lambda: super(Twice, self)._broken_promises(version)
         )
-        return found
+        return promises
 
     def _known(self, what: Any, find: Callable[[], Any]) -> Any:
         run: Any = self.run
@@ -152,11 +156,12 @@ class Examining(examining.Examining):
         """Write down questions, and what became of them when they were run again."""
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         examining.QuestionGenerator = Twice  # type: ignore[misc]
-        examining.CALL_TIME_FRACTION = PATIENT
+        examining.CALL_TIME_FRACTION = CALL_TIME_FACTOR
         examining.MAX_QUESTIONS = int(self.job["most"])
         self.known = dict[Any, Any]()
         for seed in self.job["sittings"]:
-            self.job["seed"], self.made = seed, 0
+            self.job["seed"] = seed
+            self.made = 0
             super().pytest_sessionfinish(session)
 
     def _replace_sandbox(self) -> None:

@@ -15,15 +15,20 @@ from benchmarks.experiments import Experiment, at_least, at_most
 from benchmarks.measure import ROOT
 from benchmarks.widgets import brushing, notebooks
 
-FIRST, PLAY, TUNE, FRAMES = 5.0, 25.0, 100.0, 50.0
+FIRST = 5.0
+PLAY = 25.0
+TUNE = 100.0
+FRAMES = 50.0
 
 
 def row(path: Path) -> Experiment:
     """Return the row of a notebook; it must hold what the widgets in it must."""
     text = path.read_text(encoding="utf8")
     holds = [at_most(notebooks.FIRST, FIRST)]
-    holds += [at_most(notebooks.WORST["play"], PLAY)] if "widgets.play(" in text else []
-    holds += [at_most(notebooks.WORST["tune"], TUNE)] if "widgets.tune(" in text else []
+    if "widgets.play(" in text:
+        holds.append(at_most(notebooks.WORST["play"], PLAY))
+    if "widgets.tune(" in text:
+        holds.append(at_most(notebooks.WORST["tune"], TUNE))
     return Experiment(
         path.stem, "in JupyterLab", lambda folder: notebooks.opened(folder, path.name), tuple(holds)
     )

@@ -6,7 +6,9 @@ from benchmarks.widgets import browsers
 from hdrlab import scenes
 from hdrlab.show import widgets
 
-SHAPE, SIZE, MAGNIFICATIONS = (768, 1024), 512, (1, 2, 4)
+SHAPE = (768, 1024)
+SIZE = 512
+MAGNIFICATIONS = (1, 2, 4)
 FIGURE = "frames a second, magnified 1, 2, 4 times"
 SECONDS = 4
 
@@ -37,4 +39,8 @@ def brushed(_: Path) -> dict[str, list[float]]:
     with browsers.page() as (page, tools):
         tools.open_widget(page, brush)
         page.evaluate(ROUND, [1, 1])
-        return {FIGURE: [page.evaluate(ROUND, [each, SECONDS]) for each in MAGNIFICATIONS]}
+        return {
+            FIGURE: [
+                page.evaluate(ROUND, [magnification, SECONDS]) for magnification in MAGNIFICATIONS
+            ]
+        }

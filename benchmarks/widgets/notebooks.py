@@ -52,31 +52,34 @@ def opened(_folder: Path, name: str) -> Figures:
         server.open(page, name)
         figures: Figures = {FIRST: page.evaluate(FIRST_PICTURE)}
         server.until_done(page)
-        each = {kind: sliders(page, kind) for kind in WORST}
+        figures_of_kind = {kind: sliders(page, kind) for kind in WORST}
     figures |= {
-        WORST[kind]: max(p95 for _, p95 in found.values()) for kind, found in each.items() if found
+        WORST[kind]: max(p95 for _, p95 in seconds.values())
+        for kind, seconds in figures_of_kind.items()
+        if seconds
     }
-    return figures | each["play"] | each["tune"]
+    return figures | figures_of_kind["play"] | figures_of_kind["tune"]
 
 
 def sliders(page: Any, kind: str) -> Figures:
     """Return the latency of every slider of one kind of widget, median and 95 %, in ms."""
-    found: Figures = {}
+    figures: Figures = {}
     for number, widget in enumerate(page.locator(f".hdrlab[data-kind={kind}]").all(), 1):
         widget.scroll_into_view_if_needed()
         names = widget.locator(".hdrlab-slider span:first-child").all_inner_texts()
         for name, slider in zip(names, widget.get_by_role("slider").all(), strict=True):
             latencies = moved(page, widget, slider)
-            found[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(
+            figures[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(
                 latencies, (0.5, 0.95)
             ).tolist()
-    return found
+    return figures
 
 
 def moved(page: Any, widget: Any, slider: Any) -> list[float]:
     """Return the latency of each press of an arrow key, there and back again, after two that warm up."""
     slider.focus()
-    top, at = int(slider.get_attribute("max")), int(slider.input_value())
+    top = int(slider.get_attribute("max"))
+    at = int(slider.input_value())
     places = bouncing(at, top, PRESSES + 3)
     latencies = []
     for here, there in pairwise(places):
@@ -95,7 +98,8 @@ def bouncing(at: int, top: int, count: int) -> list[int]:
     >>> bouncing(1, 2, 6)
     [1, 2, 1, 0, 1, 2]
     """
-    places, step = [at], 1
+    places = [at]
+    step = 1
     while len(places) < count:
         step = -step if not 0 <= places[-1] + step <= top else step
         places.append(places[-1] + step)

@@ -36,9 +36,14 @@ def everybody(tmp_path_factory):
 
 
 def test_a_class_of_300_contains_every_mistake_attack_and_trap(everybody):
-    which = {kind: {one.which for one in everybody if one.kind == kind} for kind in handed.SHARES}
+    which = {
+        kind: {member.which for member in everybody if member.kind == kind}
+        for kind in handed.SHARES
+    }
     assert len(everybody) == 300 == sum(handed.SHARES.values())
-    assert which["mistake"] == {one.name for one in misconceptions.known() if one.task in HW2}
+    assert which["mistake"] == {
+        member.name for member in misconceptions.known() if member.task in HW2
+    }
     assert which["attack"] == set(attack_fixtures.ATTACK_NAMES) and which["trap"] == set(
         MALICIOUS_ARCHIVES
     )
@@ -56,15 +61,15 @@ def test_a_smaller_class_has_the_same_mixture(count):
 def test_the_command_can_read_the_class_that_the_benchmark_writes(everybody, tmp_path):
     folder = handed.write(tmp_path / "class", everybody[:9])
     roster = read(folder / "roster.csv")
-    assert set(roster.teams()) == {one.team for one in everybody[:9]}
+    assert set(roster.teams()) == {member.team for member in everybody[:9]}
     assert {len(team) for team in roster.teams().values()} == {1, 2}
     times = csv_tables.read_csv(folder / "received.csv")
-    assert [row["file"] for row in times] == [one.file for one in everybody[:9]]
+    assert [row["file"] for row in times] == [member.file for member in everybody[:9]]
 
 
 def test_the_results_attack_targets_the_output_folder_of_the_run(everybody):
-    (one,) = (one for one in everybody if one.which == "a07_results")
-    assert b"def double(" not in one.data and str(Path("target")).encode() in one.data
+    (member,) = (member for member in everybody if member.which == "a07_results")
+    assert b"def double(" not in member.data and str(Path("target")).encode() in member.data
 
 
 def one_of(team, kind, which="", score=1.0, problems=(), named=None):
@@ -76,7 +81,7 @@ def one_of(team, kind, which="", score=1.0, problems=(), named=None):
 
 
 def test_wrong_scores_and_missed_mistakes_are_counted():
-    known = next(one for one in misconceptions.known() if one.task == "hat")
+    known = next(mistake for mistake in misconceptions.known() if mistake.task == "hat")
     good = [
         one_of("a", "right"),
         one_of("b", "trap", score=0, problems=("The archive is refused: a link.",)),
@@ -91,21 +96,19 @@ def test_wrong_scores_and_missed_mistakes_are_counted():
     ]
     measures = (judged.gained, judged.not_whole, judged.not_named, judged.not_refused)
     for members, expected in ((good, (0, 0, 0, 0)), (bad, (0.25, 1, 100, 1))):
-        each, graded = (
-            [one for one, _ in members],
-            {result.student: result for _, result in members},
-        )
-        assert tuple(measure(graded, each) for measure in measures) == expected
-        assert judged.lost(graded, each) == 0
+        members_alone = [mistake for mistake, _ in members]
+        graded = {result.student: result for _, result in members}
+        assert tuple(measure(graded, members_alone) for measure in measures) == expected
+        assert judged.lost(graded, members_alone) == 0
     assert (
-        judged.lost({}, each) == 4
-        and judged.not_whole({}, each) == 1
-        and judged.not_refused({}, each) == 1
+        judged.lost({}, members_alone) == 4
+        and judged.not_whole({}, members_alone) == 1
+        and judged.not_refused({}, members_alone) == 1
     )
 
 
 def test_two_runs_that_differ_in_one_byte_or_cell_are_distinguished(tmp_path):
-    each = [one_of("a", "right")[0], one_of("b", "right")[0]]
+    results_of_members = [one_of("a", "right")[0], one_of("b", "right")[0]]
     for out in ("one", "same", "other"):
         (tmp_path / out / "results").mkdir(parents=True)
         (tmp_path / out / "feedback" / "a").mkdir(parents=True)
@@ -116,13 +119,13 @@ def test_two_runs_that_differ_in_one_byte_or_cell_are_distinguished(tmp_path):
         csv_tables.write_csv(
             tmp_path / out / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 2)]
         )
-    assert judged.differing(tmp_path / "one", tmp_path / "same", each) == 0
+    assert judged.differing(tmp_path / "one", tmp_path / "same", results_of_members) == 0
     (tmp_path / "other" / "feedback" / "a" / "feedback.html").write_text("<p>well gone")
     csv_tables.write_csv(
         tmp_path / "other" / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 3)]
     )
     (tmp_path / "other" / "results" / "b.0123.json").write_text("{}")
-    assert judged.differing(tmp_path / "one", tmp_path / "other", each) == 3
+    assert judged.differing(tmp_path / "one", tmp_path / "other", results_of_members) == 3
     assert set(judged.read(tmp_path / "one")) == {"a"} and judged.size(tmp_path / "one")[0] == 3
 
 
@@ -158,14 +161,14 @@ def test_the_benchmark_of_a_class_is_called_class():
 
 
 def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path):
-    each = mixed.honest(60, tmp_path)
-    assert len(each) == 60 == len({one.team for one in each}) and not any(
-        one.hostile for one in each
+    honest_members = mixed.honest(60, tmp_path)
+    assert len(honest_members) == 60 == len({member.team for member in honest_members}) and not any(
+        member.hostile for member in honest_members
     )
-    others = mixed.hostile(tmp_path, each[0])
+    others = mixed.hostile(tmp_path, honest_members[0])
     which = {
-        kind: {one.which for one in others if one.kind == kind}
-        for kind in {one.kind for one in others}
+        kind: {member.which for member in others if member.kind == kind}
+        for kind in {member.kind for member in others}
     }
     taken = which.pop("taken")
     assert which == {
@@ -177,7 +180,7 @@ def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path
         "attack": set(attack_fixtures.ATTACK_NAMES),
         "trap": set(MALICIOUS_ARCHIVES),
     }
-    assert len(others) >= 120 and each[0].file in taken
+    assert len(others) >= 120 and honest_members[0].file in taken
 
 
 def test_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
@@ -193,39 +196,42 @@ def test_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
         return used
 
     monkeypatch.setattr(class_, "grade", graded)
-    monkeypatch.setattr(class_, "along", lambda work, each, _: [used] * len(each))
+    monkeypatch.setattr(class_, "along", lambda work, items, _: [used] * len(items))
     class_.whole(tmp_path, 12)
-    found = class_.among_hostile(tmp_path, 3)
+    rows = class_.among_hostile(tmp_path, 3)
     assert (
-        len(set(written)) == len(written) == 4
-        and found["hostile ones of whom nothing is said"] == 0
+        len(set(written)) == len(written) == 4 and rows["hostile ones of whom nothing is said"] == 0
     )
     assert class_.most_costly(tmp_path)["CPU seconds of the worst"] == 1
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there are names that this system cannot write")
 def test_hostile_students_without_a_note_are_found(tmp_path):
-    each = mixed.honest(2, tmp_path)
-    kinds = {one.kind: one for one in mixed.hostile(tmp_path, each[0])}
+    honest_members = mixed.honest(2, tmp_path)
+    kinds = {member.kind: member for member in mixed.hostile(tmp_path, honest_members[0])}
     others = list(kinds.values())
-    folder = mixed.write(tmp_path / "class", each, others)
-    assert set(read(folder / "roster.csv").teams()) == {one.team for one in each} | {
-        one.student for one in others
-    }
+    folder = mixed.write(tmp_path / "class", honest_members, others)
+    assert set(read(folder / "roster.csv").teams()) == {
+        member.team for member in honest_members
+    } | {member.student for member in others}
     names = [os.fsdecode(path.name) for path in (folder / "submissions").iterdir()]
-    assert all(any(name.startswith(one.student) for name in names) for one in others)
+    assert all(any(name.startswith(member.student) for name in names) for member in others)
     (tmp_path / "out" / "results").mkdir(parents=True)
     (tmp_path / "out" / "results" / f"{others[0].student}.0123.json").write_text("{}")
-    rows = [(one.student, "refused" if one is others[1] else "") for one in others]
+    rows = [(member.student, "refused" if member is others[1] else "") for member in others]
     csv_tables.write_csv(tmp_path / "out" / "gradebook.csv", ("student", "note"), rows)
     assert mixed.untold(tmp_path / "out", others) == others[2:]
 
 
 def test_costly_submissions_are_valid_python_with_unique_names():
-    each = list(costs.each())
-    assert len({(one.kind, one.which) for one in each}) == len(each) > 30
-    for one in each:
-        if one.kind == "code":
+    submissions = list(costs.costly_submissions())
+    assert (
+        len({(submission.kind, submission.which) for submission in submissions})
+        == len(submissions)
+        > 30
+    )
+    for submission in submissions:
+        if submission.kind == "code":
             assert {
-                node.name for node in ast.parse(one.data()).body if hasattr(node, "name")
+                node.name for node in ast.parse(submission.data()).body if hasattr(node, "name")
             } == HW2
