@@ -25,12 +25,12 @@ TIMES = 4.0 ** np.linspace(-6, 3, 7)
 
 
 def aligned(images, align="auto"):
-    """Return the first stage of `assemble` of photographs a factor of 16 apart."""
+    """Return the first stage of `assemble` for photos a factor of 16 apart."""
     return pipeline.align_bracket(bracket(images, 16.0 ** np.arange(len(images))), align)
 
 
 def night(offsets, seed=0):
-    """Return photographs of a street at night: nearly black but for lamps, and noisy."""
+    """Return photos of a street at night: nearly black except for lamps, and noisy."""
     rng = np.random.default_rng(seed)
     E = 1e-3 * scene_radiance(coffee(), 1.0)
     for y, x in rng.integers(MARGIN, (MARGIN + H, MARGIN + W), (12, 2)):
@@ -43,34 +43,34 @@ def night(offsets, seed=0):
 def test_nearly_black_or_white_frames_from_a_tripod_give_no_warning(texture, align):
     images = shoot(STILL, TIMES, texture=texture(), decades=3.0)
     assert np.mean(images[0] < 12) > 0.8 and np.mean(images[-1] > 243) > 0.8
-    found = aligned(images, align)
-    assert not found.offsets.any() and found.doubts == ()
-    assert found.notes == ()
+    assembly = aligned(images, align)
+    assert not assembly.offsets.any() and assembly.doubts == ()
+    assert assembly.notes == ()
 
 
 def test_photos_that_are_black_or_white_nearly_everywhere_give_no_warning():
-    """Hard contrast and sharpening leave no pixel that both expose well, only edges."""
+    """High contrast and sharpening leave only edge pixels well exposed in both photos."""
     hard = camera.Camera(response=lambda X: X**3, full_well=40_000.0)
     taken = camera.shoot(scenes.room((344, 516)), [0.084, 0.277], hard, rng=0)
     soft = gaussian_filter(taken.images.astype(np.float32), (0, 1, 1, 0))
     sharp = np.clip(np.rint(2.0 * taken.images - soft), 0, 255).astype(np.uint8)
-    found = aligned(sharp)
-    assert not found.offsets.any() and found.doubts == ()
+    assembly = aligned(sharp)
+    assert not assembly.offsets.any() and assembly.doubts == ()
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_night_scene_from_a_tripod_gives_no_warning(seed):
-    found = aligned(night([(0, 0)] * 4, seed))
-    assert not found.offsets.any() and found.doubts == ()
+    assembly = aligned(night([(0, 0)] * 4, seed))
+    assert not assembly.offsets.any() and assembly.doubts == ()
 
 
 def test_a_frame_that_cannot_be_aligned_moves_with_its_neighbour_and_is_noted():
     images = shoot(HAND[1:4], [1, 4, 16])
     black = np.random.default_rng(0).integers(0, 3, images[:1].shape, dtype=np.uint8)
-    found = aligned(np.concatenate([black, images]))
-    assert np.array_equal(found.offsets[0], found.offsets[1]) and found.offsets[1].any()
-    (detail,) = found.details
-    assert "frame 1 and frame 2" in detail and found.doubts == ()
+    assembly = aligned(np.concatenate([black, images]))
+    assert np.array_equal(assembly.offsets[0], assembly.offsets[1]) and assembly.offsets[1].any()
+    (detail,) = assembly.details
+    assert "frame 1 and frame 2" in detail and assembly.doubts == ()
 
 
 def test_misaligned_pairs_give_one_warning_that_says_what_to_do():
@@ -99,14 +99,14 @@ def test_the_search_range_grows_with_the_image_size():
     views = [0.2 * t * E[y : y + 700, x : x + 900] for t, y, x in ((1, 10, 5), (4, 110, 95))]
     images = np.stack(
         [
-            (255 * np.clip(one + 0.002 * rng.standard_normal(one.shape), 0, 1) ** 0.45)
-            for one in views
+            (255 * np.clip(view + 0.002 * rng.standard_normal(view.shape), 0, 1) ** 0.45)
+            for view in views
         ]
     )
-    found = register(images.astype(np.uint8), "mtb")
+    registration = register(images.astype(np.uint8), "mtb")
     assert (
-        np.abs(np.subtract(found.pairs[0].offset, (-100, -90))).max() <= 1
-        and found.pairs[0].reliable
+        np.abs(np.subtract(registration.pairs[0].offset, (-100, -90))).max() <= 1
+        and registration.pairs[0].reliable
     )
 
 
@@ -117,13 +117,13 @@ def test_the_validation_gives_the_same_result_at_every_image_size():
         large = np.kron(images, np.ones((1, times, times, 1))) + rng.normal(
             0, 2 * times, (2, H * times, W * times, 1)
         )
-        (one,) = register(np.clip(large, 0, 255).astype(np.uint8), "mtb").pairs
-        assert one.known and not one.apart and one.confidence > 0.9
+        (pair,) = register(np.clip(large, 0, 255).astype(np.uint8), "mtb").pairs
+        assert pair.known and not pair.apart and pair.confidence > 0.9
 
 
 def test_a_single_photo_is_not_moved():
-    found = register(np.full((1, 40, 50), 90, np.uint8), "mtb")
-    assert np.array_equal(found.homographies, [np.eye(3)]) and len(found.pairs) == 0
+    registration = register(np.full((1, 40, 50), 90, np.uint8), "mtb")
+    assert np.array_equal(registration.homographies, [np.eye(3)]) and len(registration.pairs) == 0
 
 
 def test_rotated_photos_are_reported_once_and_not_as_motion_too():
@@ -147,7 +147,7 @@ def test_a_small_rotation_that_no_shift_undoes_is_reported_and_the_method_that_d
 
 
 def by_percentile(monkeypatch, **validations):
-    """Return which of the answers at the median and at the other two percentiles is taken."""
+    """Return which offset is chosen among those at the median and at two other percentiles."""
     answers = {
         q: replace(
             alignment.validation.uninformative(0, 1),
@@ -188,7 +188,7 @@ LARGE = (400, 656)
 
 
 def taken_by_hand(scene, degrees, seed=0):
-    """Return a bracket of four photos that turn by up to so many degrees, and the true homographies."""
+    """Return a bracket of four photos rotated by up to so many degrees, and the true homographies."""
     rng = np.random.default_rng(seed)
     E = getattr(scenes, scene)(LARGE)
     moves = [
@@ -199,11 +199,11 @@ def taken_by_hand(scene, degrees, seed=0):
     return taken, hand_motion.frame_homographies(moves, E.shape)
 
 
-def misregistration(found, truth, shape):
-    """Return the distance in pixels that 95 % of the image does not exceed, for the worst photo."""
+def misregistration(homographies, truth, shape):
+    """Return the 95th percentile of the displacement in pixels, for the worst photo."""
     y, x = np.mgrid[0 : shape[0] : 20, 0 : shape[1] : 20]
     points = np.stack([x.ravel(), y.ravel()], axis=-1)
-    off = warp.apply(found, points) - warp.apply(np.linalg.inv(truth[2]) @ truth, points)
+    off = warp.apply(homographies, points) - warp.apply(np.linalg.inv(truth[2]) @ truth, points)
     return np.quantile(np.hypot(off[..., 0], off[..., 1]), 0.95, axis=1).max()
 
 
@@ -211,23 +211,23 @@ def misregistration(found, truth, shape):
 @pytest.mark.parametrize("scene", ["chapel", "street"])
 def test_auto_finds_small_and_large_rotations_to_a_fraction_of_a_pixel(scene, degrees):
     taken, truth = taken_by_hand(scene, degrees)
-    found = register(taken.images)
-    assert misregistration(found.homographies, truth, taken.images.shape[1:3]) < 0.4
-    assert all(pair.confirmed for pair in found.pairs)
+    registration = register(taken.images)
+    assert misregistration(registration.homographies, truth, taken.images.shape[1:3]) < 0.4
+    assert all(pair.confirmed for pair in registration.pairs)
 
 
 @pytest.mark.parametrize(("scene", "degrees"), [("chapel", 0.05), ("room", 0.08)])
 def test_auto_finds_a_displacement_of_half_a_pixel_in_dark_photos(scene, degrees):
     taken, truth = taken_by_hand(scene, degrees, seed=4)
-    found = register(taken.images)
-    assert misregistration(found.homographies, truth, taken.images.shape[1:3]) < 0.4
+    registration = register(taken.images)
+    assert misregistration(registration.homographies, truth, taken.images.shape[1:3]) < 0.4
 
 
 def test_auto_does_not_resample_photos_from_a_tripod():
     room = scenes.room(LARGE)
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
-    found = register(taken.images)
-    assert found.method == "none" and all(pair.confirmed for pair in found.pairs)
+    registration = register(taken.images)
+    assert registration.method == "none" and all(pair.confirmed for pair in registration.pairs)
 
 
 def test_well_exposed_photos_that_do_not_fit_are_reported_and_change_no_times():
@@ -236,10 +236,10 @@ def test_well_exposed_photos_that_do_not_fit_are_reported_and_change_no_times():
         for j in range(3)
     ]
     mixed = bracket(np.concatenate(shots), [1, 4, 16])
-    found = pipeline.assemble(mixed, align="auto", response="linear")
-    assert found.doubts and "align" in found.doubts[0]
-    assert np.array_equal(found.bracket.times, mixed.times)
-    assert found.moving is None
+    assembly = pipeline.assemble(mixed, align="auto", response="linear")
+    assert assembly.doubts and "align" in assembly.doubts[0]
+    assert np.array_equal(assembly.bracket.times, mixed.times)
+    assert assembly.moving is None
 
 
 def test_a_bright_disc_that_drifts_on_a_black_ground_is_aligned_by_its_outline():
@@ -249,5 +249,5 @@ def test_a_bright_disc_that_drifts_on_a_black_ground_is_aligned_by_its_outline()
         disc = np.hypot(y - 70 + 5 * number, x - 50 - 12 * number) < 16
         light = time * np.where(disc, 0.2, 1e-5)
         photos.append((255 * np.clip(light, 0, 1) ** 0.45).astype(np.uint8))
-    found = register(np.stack(photos)).homographies
-    assert np.abs(found[:, :2, 2] - [[12, -5], [0, 0], [-12, 5]]).max() < 0.3
+    homographies = register(np.stack(photos)).homographies
+    assert np.abs(homographies[:, :2, 2] - [[12, -5], [0, 0], [-12, 5]]).max() < 0.3

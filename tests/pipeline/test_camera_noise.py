@@ -1,4 +1,4 @@
-"""One's own camera, measured from darks and flats: right figures, honest intervals, and faults found.
+"""Camera noise measured from dark frames and flat fields: values, intervals and detected faults.
 
 The cameras are simulated, and their photos are DNG files, so that the truth is known.
 """
@@ -32,7 +32,7 @@ CAMERA = Sensor(full_well=20_000, read_noise=6, gain=5.5, bits=12, black=128)
 TIMES = (0.001, 0.004, 0.02, 0.1, 0.3, 0.45, 0.6, 0.85, 1.4, 2.6)
 SMALL = Studio(side=240, times=TIMES)
 LARGE = Studio(side=360, times=TIMES)
-FEW = Studio(side=120, times=(0.1, 0.3, 0.6, 0.9))
+FOUR_PAIRS = Studio(side=120, times=(0.1, 0.3, 0.6, 0.9))
 
 
 def measure(folder, simulated=CAMERA, **settings):
@@ -45,7 +45,7 @@ def kinds_of(noise):
 
 
 def value(noise, quantity):
-    """Return a figure of all channels."""
+    """Return a quantity of all channels."""
     return np.array([getattr(channel, quantity).value for channel in noise.channels])
 
 
@@ -89,7 +89,7 @@ def test_of_20_cameras_every_figure_is_right_and_95_percent_of_the_intervals_hol
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say(measured):
-    """Each figure of 3 channels: one miss in 12 happens by chance, four do not."""
+    """Each quantity has 3 channels: one miss in 12 happens by chance, four do not."""
     errors = own_camera.compare(measured, CAMERA)
     assert sum(not held for holds in errors.holds.values() for held in holds) < 4
 
@@ -168,9 +168,9 @@ SIDE_EFFECTS = {
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_of_the_photos_is_named(name, tmp_path):
     fault = own_camera.make_faults(CAMERA)[name]
-    found = kinds_of(measure(tmp_path, fault=fault, studio=LARGE))
-    assert FAULTS[name] in found
-    assert found <= {FAULTS[name]} | SIDE_EFFECTS.get(name, set())
+    kinds = kinds_of(measure(tmp_path, fault=fault, studio=LARGE))
+    assert FAULTS[name] in kinds
+    assert kinds <= {FAULTS[name]} | SIDE_EFFECTS.get(name, set())
 
 
 def test_each_fault_that_can_be_simulated_is_tested():
@@ -213,7 +213,7 @@ def write_dng(path, levels, *, exposure, camera="Simulated"):
 
 @pytest.fixture
 def own(tmp_path):
-    return own_camera.write_photos(tmp_path, CAMERA, studio=FEW)
+    return own_camera.write_photos(tmp_path, CAMERA, studio=FOUR_PAIRS)
 
 
 def test_a_dng_states_the_exposure_and_the_camera_that_it_was_written_with(tmp_path):
@@ -233,7 +233,7 @@ def test_a_dng_states_the_exposure_and_the_camera_that_it_was_written_with(tmp_p
     ],
 )
 def test_photos_of_another_speed_camera_or_size_are_named(change, message, own, tmp_path):
-    other = dataclasses.replace(FEW, **change)
+    other = dataclasses.replace(FOUR_PAIRS, **change)
     _, flat = own_camera.write_photos(tmp_path / "other", CAMERA, studio=other)
     shutil.copy(flat / "IMG_2.dng", own[1] / "Z.dng")
     with pytest.raises(InputError, match=message):
@@ -355,7 +355,7 @@ def bracket_folder(tmp_path_factory):
 
 
 def test_the_measured_noise_gives_the_deviation_of_a_developed_pixel(bracket_folder, measured):
-    """Demosaicing averages pixels of a smooth scene: errors are 0.65 to 1 of what s says."""
+    """Demosaicing averages pixels of the smooth scene, so the errors are 0.65 to 1 times s."""
     folder, light = bracket_folder
     assembly = pipeline.assemble(read_bracket(folder), align="none")
     noise = camera_noise.noise_of_developed(measured, folder / "0.dng")

@@ -25,7 +25,8 @@ def photograph_night(*, longest_factor=1.0):
     noisy = camera.Camera(response="gamma", full_well=20000, read_noise=4)
     taken = camera.shoot(E, times, noisy, rng=1)
     images = taken.images.astype(int)
-    images = images + [0, 0, 2] * (images.max(axis=-1, keepdims=True) < 4)
+    is_dark = images.max(axis=-1, keepdims=True) < 4
+    images = images + np.where(is_dark, [0, 0, 2], 0)
     images = np.clip(images, 0, 255).astype(np.uint8)
     return bracket(images, times)
 
@@ -89,8 +90,8 @@ def test_gray_photos_with_a_color_cast_have_it_in_every_tone():
     E = (ramp * CAST * np.ones((200, 1, 1))).astype(np.float32)
     sensor = camera.Camera(response="srgb", full_well=20_000, read_noise=8)
     taken = camera.shoot(E, 2.0 ** np.arange(-6, 1), sensor, rng=1)
-    found = stages.assemble(taken, align="none")
-    errors = measure_ratios_by_tone(found.E) - np.log2(CAST[[0, 2]])
+    assembly = stages.assemble(taken, align="none")
+    errors = measure_ratios_by_tone(assembly.E) - np.log2(CAST[[0, 2]])
     assert np.abs(errors).max() < 0.1
 
 
@@ -111,8 +112,8 @@ def test_the_gray_case_has_the_color_of_its_photos_in_every_tone(shared):
     ]
     exposures = np.exp(true_g("srgb"))[well_exposed]
     photo_ratios = measure_log_ratios(exposures[None])
-    found = stages.assemble(taken)
-    assert np.abs(measure_ratios_by_tone(found.E) - photo_ratios).max() < 0.1
+    assembly = stages.assemble(taken)
+    assert np.abs(measure_ratios_by_tone(assembly.E) - photo_ratios).max() < 0.1
 
 
 def test_a_large_map_fades_in_place_as_a_small_one_does():
@@ -135,6 +136,7 @@ def test_a_large_map_fades_in_place_as_a_small_one_does():
 
 def test_the_noise_of_a_large_photo_is_its_standard_deviation():
     rng = np.random.default_rng(3)
-    level, deviation = 8 * 257, 1.2 * 257
+    level = 8 * 257
+    deviation = 1.2 * 257
     photo = rng.normal(level, deviation, (1200, 1000)).astype(np.uint16)
     assert dark_pixels.measure_noise(photo) == pytest.approx(deviation, rel=0.01)

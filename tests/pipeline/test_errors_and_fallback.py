@@ -35,9 +35,9 @@ def worthless():
 
 
 def test_a_response_that_no_camera_has_marks_the_map_as_fallback(worthless):
-    found = pipeline.assemble(worthless, align="none", times="stated")
-    assert found.fallback
-    assert found.doubts
+    assembly = pipeline.assemble(worthless, align="none", times="stated")
+    assert assembly.fallback
+    assert assembly.doubts
 
 
 def test_a_map_whose_frames_disagree_by_stops_is_not_worth_a_picture(taken):
@@ -46,17 +46,17 @@ def test_a_map_whose_frames_disagree_by_stops_is_not_worth_a_picture(taken):
 
     wrong = replace(taken, times=taken.times * [1, 3, 1, 3])
     for bracket, is_worthless in ((taken, False), (wrong, True)):
-        found = pipeline.assemble(
+        assembly = pipeline.assemble(
             bracket, response=recover_true_response, align="none", times="stated"
         )
-        assert bool(found.fallback) == is_worthless
+        assert bool(assembly.fallback) == is_worthless
 
 
 def test_the_photos_of_a_worthless_map_are_kept_for_the_fusion(worthless):
     bracket = replace(worthless, images=worthless.images.copy())
-    *_, found = assemble_steps(bracket, align="none", times="stated", in_place=True, release=True)
-    assert found.fallback
-    assert np.array_equal(found.bracket.images, worthless.images)
+    *_, final = assemble_steps(bracket, align="none", times="stated", in_place=True, release=True)
+    assert final.fallback
+    assert np.array_equal(final.bracket.images, worthless.images)
 
 
 def test_the_command_line_writes_an_exposure_fusion_for_a_worthless_map(worthless, tmp_path):
@@ -113,8 +113,8 @@ class Recovery:
 
 
 def test_a_response_may_be_a_callable_object_that_is_not_hashable(taken):
-    found = pipeline.assemble(taken, align="none", response=Recovery())
-    assert np.array_equal(found.g, debevec.recover(taken.images, taken.times))
+    assembly = pipeline.assemble(taken, align="none", response=Recovery())
+    assert np.array_equal(assembly.g, debevec.recover(taken.images, taken.times))
 
 
 def test_an_operator_may_come_from_a_file_that_is_not_importable_by_name(taken, tmp_path):

@@ -64,8 +64,8 @@ def test_an_rgbe_map_with_its_rounding_is_accepted(tmp_path):
     map_path = tmp_path / "room.hdr"
     radiance.write_radiance(map_path, state.E)
     path = write_evidence(evidence_path(map_path), state)
-    found = explain_map_pixel(path, radiance.read_radiance(map_path), 10, 20)
-    assert found.luminance == pytest.approx(state.why(10, 20).luminance, rel=0.02)
+    explanation = explain_map_pixel(path, radiance.read_radiance(map_path), 10, 20)
+    assert explanation.luminance == pytest.approx(state.why(10, 20).luminance, rel=0.02)
 
 
 def test_photos_left_out_because_something_moved_are_named_from_the_file(tmp_path):

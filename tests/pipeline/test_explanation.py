@@ -25,13 +25,13 @@ def combine(claims, shares, method):
     return np.sum(shares * claims, axis=0)
 
 
-def last_values(found):
+def last_values(explanations):
     """Return the radiance of pixels after the last change."""
-    return found.changes[-1].radiance if found.changes else found.mean
+    return explanations.changes[-1].radiance if explanations.changes else explanations.mean
 
 
 def everywhere(state):
-    """Return the claims about every pixel of a map."""
+    """Return the explanations of all pixels of a map."""
     y, x = np.indices(state.quality.shape).reshape(2, -1)
     return collect_claims(state, y, x, state.record.sensor_noise)
 
@@ -71,13 +71,17 @@ def test_claims_and_shares_give_the_maps_value_again_for_every_merge(method, cha
     state = pipeline.assemble(
         chapel(channels), align="none", merge=method, ghosts="none", response="auto"
     )
-    found = everywhere(state)
-    is_measured = found.shares.sum(axis=0) > 0
+    explanations = everywhere(state)
+    is_measured = explanations.shares.sum(axis=0) > 0
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = combine(found.claims, found.shares, method)
-    np.testing.assert_allclose(found.mean[is_measured], mean[is_measured], rtol=FLOAT32_ROUNDING)
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
-    kinds = {Quality(flag) for flag in np.unique(found.quality)}
+        mean = combine(explanations.claims, explanations.shares, method)
+    np.testing.assert_allclose(
+        explanations.mean[is_measured], mean[is_measured], rtol=FLOAT32_ROUNDING
+    )
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
+    kinds = {Quality(flag) for flag in np.unique(explanations.quality)}
     assert {Quality.MEASURED, Quality.CLIPPED, Quality.DARK, Quality.STUCK} <= kinds
 
 
@@ -90,12 +94,14 @@ def test_where_something_moved_the_photos_that_were_used_give_the_maps_value_aga
     state = pipeline.assemble(
         ball_bracket(channels), align="none", merge=method, ghosts=ghosts, times="stated"
     )
-    found = everywhere(state)
-    moved = (found.roles == Role.MOVED).any(axis=0)
+    explanations = everywhere(state)
+    moved = (explanations.roles == Role.MOVED).any(axis=0)
     assert moved.any() and not moved.all()
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
-    left_out = found.roles == Role.MOVED
-    assert not found.shares[left_out].any()
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
+    left_out = explanations.roles == Role.MOVED
+    assert not explanations.shares[left_out].any()
 
 
 def test_masked_photos_have_no_share_and_no_claim():
@@ -103,11 +109,13 @@ def test_masked_photos_have_no_share_and_no_claim():
     valid = np.ones(taken.images.shape[:3], bool)
     valid[1, :, :50] = False
     state = pipeline.assemble(replace(taken, valid=valid), align="none", ghosts="none")
-    found = everywhere(state)
+    explanations = everywhere(state)
     is_masked = ~state.bracket.valid.reshape(len(valid), -1)
-    assert np.array_equal(found.roles == Role.MASKED, is_masked)
-    assert not found.shares[is_masked].any()
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
+    assert np.array_equal(explanations.roles == Role.MASKED, is_masked)
+    assert not explanations.shares[is_masked].any()
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
     assert state.why(10, 10).photos[1].claim == "–"
 
 
@@ -117,7 +125,8 @@ def test_claims_of_a_linear_camera_are_pixel_value_over_time_in_the_unit_of_the_
     state = pipeline.assemble(
         bracket(images, [1, 4]), align="none", response="linear", times="stated"
     )
-    dark, bright = state.why(0, 0), state.why(0, 1)
+    dark = state.why(0, 0)
+    bright = state.why(0, 1)
     # a linear response is 1 at the middle pixel value, 128
     assert [photo.luminance for photo in dark.photos] == pytest.approx([16 / 128, 16 / 128])
     assert bright.photos[0].luminance == pytest.approx(100 / 128)
@@ -136,7 +145,8 @@ def test_claims_of_a_linear_camera_are_pixel_value_over_time_in_the_unit_of_the_
 def test_alternatives_are_the_maps_that_the_other_merges_make():
     taken = chapel(3)
     state = pipeline.assemble(taken, align="none", ghosts="none")
-    y, x = 70, 100
+    y = 70
+    x = 100
     for method in METHODS:
         other = pipeline.assemble(
             taken, align="none", ghosts="none", merge=method, response=lambda *a, **k: state.g
@@ -199,8 +209,10 @@ def test_the_deviation_of_a_pixel_is_that_of_the_map_with_its_uncertainty():
     y, x = np.indices(state.quality.shape).reshape(2, -1)
     plain = collect_claims(state, y, x, state.sensor_noise)
     np.testing.assert_array_equal(plain.s, sure.s.reshape(len(y), -1))
-    found = everywhere(sure)
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
+    explanations = everywhere(sure)
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
 
 
 def test_a_calibrated_map_is_explained_in_candela_per_square_meter():
@@ -213,23 +225,29 @@ def test_a_calibrated_map_is_explained_in_candela_per_square_meter():
     shares = [photo.shares for photo in explanation.photos]
     claims = [photo.radiance for photo in explanation.photos]
     assert np.sum(np.multiply(shares, claims), axis=0) == pytest.approx(explanation.mean, rel=1e-5)
-    found = everywhere(in_candela)
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
+    explanations = everywhere(in_candela)
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
 
 
 def test_glare_that_was_removed_is_a_change_to_the_maps_value():
     state = pipeline.assemble(chapel(3), align="none", ghosts="none", flare="glare")
-    found = everywhere(state)
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
+    explanations = everywhere(state)
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
 
 
 def test_sixteen_bit_photos_are_explained_too():
     raw = camera.Camera(response="linear", bits=16, full_well=20_000)
     E = scenes.room((60, 90))
     state = pipeline.assemble(camera.shoot(E, [0.02, 0.08, 0.32], raw, rng=2), align="none")
-    found = everywhere(state)
-    np.testing.assert_allclose(last_values(found), found.E, rtol=FLOAT32_ROUNDING, atol=1e-12)
-    assert found.levels.dtype == np.uint16
+    explanations = everywhere(state)
+    np.testing.assert_allclose(
+        last_values(explanations), explanations.E, rtol=FLOAT32_ROUNDING, atol=1e-12
+    )
+    assert explanations.levels.dtype == np.uint16
 
 
 def test_a_stuck_pixel_at_the_border_has_the_median_of_its_neighbors():
@@ -278,7 +296,7 @@ def test_weights_are_those_of_the_lesson():
     lesson = merge_with_quality(
         taken.images, state.bracket.times, state.g, weights.hat(), method="log", repair=False
     )
-    found = everywhere(state)
+    explanations = everywhere(state)
     np.testing.assert_allclose(
-        found.mean, lesson.E.reshape(found.mean.shape), rtol=FLOAT32_ROUNDING
+        explanations.mean, lesson.E.reshape(explanations.mean.shape), rtol=FLOAT32_ROUNDING
     )

@@ -52,25 +52,25 @@ def test_ghost_removal_is_a_stage_after_the_merge_with_a_note(moving, plain, way
         "ghosts",
         "compare",
     ]
-    found = states[-1]
-    inside = found.moving > 0
-    assert inside.any() and np.array_equal(found.E[~inside], plain.E[~inside])
-    assert not np.array_equal(found.E[inside], plain.E[inside])
-    assert any("something moved" in note for note in found.notes)
-    assert found.spread == plain.spread  # the photographs are what they were
+    final = states[-1]
+    inside = final.moving > 0
+    assert inside.any() and np.array_equal(final.E[~inside], plain.E[~inside])
+    assert not np.array_equal(final.E[inside], plain.E[inside])
+    assert any("something moved" in note for note in final.notes)
+    assert final.spread == plain.spread  # the photographs are what they were
 
 
 def test_auto_removes_ghosts_with_a_note_if_something_moved(moving, plain):
-    auto, regions = (
-        pipeline.assemble(moving, align="none", **way) for way in ({}, {"ghosts": "regions"})
-    )
+    auto = pipeline.assemble(moving, align="none")
+    regions = pipeline.assemble(moving, align="none", ghosts="regions")
     assert np.array_equal(auto.E, regions.E) and not np.array_equal(auto.E, plain.E)
     assert any("something moved in" in note for note in auto.notes) and not auto.doubts
 
 
 def test_auto_does_not_change_the_map_of_a_still_scene():
     taken = camera.shoot(scenes.room(SHAPE), camera.times_around(scenes.room(SHAPE), 5), rng=1)
-    auto, none = (pipeline.assemble(taken, align="none", ghosts=way) for way in ("auto", "none"))
+    auto = pipeline.assemble(taken, align="none", ghosts="auto")
+    none = pipeline.assemble(taken, align="none", ghosts="none")
     assert (
         np.array_equal(auto.E, none.E) and auto.moving is None and auto.doubts == none.doubts == ()
     )
@@ -82,14 +82,14 @@ def test_auto_removes_ghosts_from_photos_that_no_alignment_brings_together(
 ):
     align_bracket = registration.align_bracket
 
-    def report_misalignment(bracket, *given, **named):
+    def report_misalignment(bracket, *arguments, **named):
         aligned = align_bracket(bracket, "none")
         return replace(aligned, doubts=("two photos could not be aligned",))
 
     monkeypatch.setattr(registration, "align_bracket", report_misalignment)
-    found = pipeline.assemble(moving, align=align)
-    assert (found.moving is not None) == is_cleaned
-    assert found.doubts == ("two photos could not be aligned",)
+    assembly = pipeline.assemble(moving, align=align)
+    assert (assembly.moving is not None) == is_cleaned
+    assert assembly.doubts == ("two photos could not be aligned",)
 
 
 def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
@@ -209,15 +209,15 @@ def test_flare_removal_is_the_last_stage_before_the_comparison():
     taken = camera.shoot(veiled, times, camera.Camera(full_well=50_000), rng=1)
     states = list(pipeline.assemble_steps(taken, align="none", flare="glare"))
     assert [state.stage for state in states][-2:] == ["flare", "compare"]
-    found = states[-1]
-    assert found.glare.any() and any("the lens scattered" in note for note in found.notes)
-    assert np.median(found.E[found.glare]) < np.median(states[-3].E[found.glare])
+    final = states[-1]
+    assert final.glare.any() and any("the lens scattered" in note for note in final.notes)
+    assert np.median(final.E[final.glare]) < np.median(states[-3].E[final.glare])
 
 
 def test_wrong_times_are_not_reported_as_motion(moving):
     wrong = replace(moving, times=moving.times * np.array([1, 1, 8, 9, 10]))
-    found = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
-    assert len(found.doubts) == 1 and "--times estimate" in found.doubts[0]
+    assembly = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
+    assert len(assembly.doubts) == 1 and "--times estimate" in assembly.doubts[0]
 
 
 def test_unknown_values_of_ghosts_and_flare_raise_an_error(moving):
@@ -236,10 +236,12 @@ def test_the_command_line_and_the_report_show_what_moved(moving, plain, tmp_path
     ]
     (tmp_path / "times.csv").write_text("\n".join(lines))
     photos = sorted(map(str, tmp_path.glob("*.png")))
-    out, page = tmp_path / "map.pfm", tmp_path / "page"
-    asked = ["--align", "none", "--ghosts", "regions", "--flare", "glare", "--report", str(page)]
+    out = tmp_path / "map.pfm"
+    page = tmp_path / "page"
+    options = ["--align", "none", "--ghosts", "regions", "--flare", "glare", "--report", str(page)]
     ran = CliRunner().invoke(
-        main, ["assemble", *photos, "--times", str(tmp_path / "times.csv"), "-o", str(out), *asked]
+        main,
+        ["assemble", *photos, "--times", str(tmp_path / "times.csv"), "-o", str(out), *options],
     )
     assert ran.exit_code == 0, ran.output
     assert "something moved in" in ran.output and "veiling glare" in ran.output

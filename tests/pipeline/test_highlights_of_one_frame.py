@@ -24,9 +24,9 @@ def photograph_lamp(*, middle, lamp):
 
 def measure_lamp_error(E, assembly):
     """Return the error of the contrast between the lamp and the median, in stops."""
-    found = np.median(assembly.E[LAMP]) / np.median(assembly.E)
+    ratio = np.median(assembly.E[LAMP]) / np.median(assembly.E)
     true = np.median(E[LAMP]) / np.median(E)
-    return abs(np.log2(found / true))
+    return abs(np.log2(ratio / true))
 
 
 @pytest.mark.parametrize("floor", [0, 8])

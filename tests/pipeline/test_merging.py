@@ -1,4 +1,4 @@
-"""The longest photo limits what the merge makes of pixels that are dark in every photo."""
+"""The longest photo limits the radiance of pixels that are dark in every photo."""
 
 import numpy as np
 import pytest
@@ -16,10 +16,10 @@ TIMES = np.array([1.0, 4.0])
 
 def merge(images, *, method="shot", noise=1.0, times=TIMES, **options):
     """Return the map of photos by a linear camera."""
-    found = merging.merge_photos(
+    merged = merging.merge_photos(
         np.asarray(images, np.uint8), times, LINEAR, method=method, noise=noise, **options
     )
-    return found.E
+    return merged.E
 
 
 @pytest.mark.parametrize("method", ["shot", "likelihood"])
@@ -41,8 +41,8 @@ def test_the_longest_photo_is_no_limit_where_it_shows_nothing_of_the_scene():
 
 def test_the_brightest_of_several_long_photos_is_the_limit():
     images = [[[0]], [[0]], [[6]]]
-    found = merge(images, times=np.array([1.0, 4.0, 4.0]))
-    assert found[0, 0] == pytest.approx(6 / 4)
+    merged = merge(images, times=np.array([1.0, 4.0, 4.0]))
+    assert merged[0, 0] == pytest.approx(6 / 4)
 
 
 def test_a_stuck_pixel_keeps_the_radiance_of_its_neighbors():
@@ -56,8 +56,8 @@ def test_a_stuck_pixel_keeps_the_radiance_of_its_neighbors():
 def test_16_bit_photos_have_the_limit_of_8_bit_photos():
     images = np.array([[[3]], [[0]]], np.uint16) * 257
     g = np.log(np.maximum(np.arange(65536), 128) / 257)
-    found = merging.merge_photos(images, TIMES, g, method="shot", noise=257.0)
-    assert found.E[0, 0] <= 2 / 4
+    merged = merging.merge_photos(images, TIMES, g, method="shot", noise=257.0)
+    assert merged.E[0, 0] <= 2 / 4
 
 
 def test_noise_of_short_photos_does_not_brighten_the_dark_part_of_a_night():
@@ -71,8 +71,8 @@ def test_noise_of_short_photos_does_not_brighten_the_dark_part_of_a_night():
     limited = merging.merge_photos(taken.images, times, g, gaussian(), method="shot", noise=noise).E
     plain = merge_with_quality(taken.images, times, g, gaussian(), method="shot").E
 
-    def measure_blue_error(found):
-        ratios = np.log2(found[..., 2] / found[..., 0]) - np.log2(0.2)
+    def measure_blue_error(merged):
+        ratios = np.log2(merged[..., 2] / merged[..., 0]) - np.log2(0.2)
         return abs(np.median(ratios))
 
     assert measure_blue_error(limited) < 0.65 * measure_blue_error(plain)

@@ -30,9 +30,12 @@ def E(request):
 
 
 def test_a_developed_scene_is_well_exposed_and_hardly_clipped(E):
-    found = statistics(develop(E))
+    statistics_found = statistics(develop(E))
     assert (
-        95 < found.mean < 140 and found.contrast > 35 and found.white < 0.02 and found.black < 0.02
+        95 < statistics_found.mean < 140
+        and statistics_found.contrast > 35
+        and statistics_found.white < 0.02
+        and statistics_found.black < 0.02
     )
 
 
@@ -52,7 +55,7 @@ def test_a_downscaled_map_is_developed_to_a_similar_image(E):
 
 
 def test_colors_beyond_the_display_keep_their_hue():
-    """A sky that brightens: by clipping its blue it turns to cyan, and by the default it does not."""
+    """A sky that gets brighter: clipping its blue would turn it cyan, and the default does not."""
     sky = np.float32([0.25, 0.5, 1.0]) * np.geomspace(0.1, 10, 60 * 80, dtype=np.float32).reshape(
         60, 80, 1
     )
@@ -107,8 +110,8 @@ def test_filter_light_is_a_guided_filter_on_a_coarse_grid():
     variance = np.maximum(uniform_filter(average_cells(lL * lL), width) - mean * mean, 0)
     slope = variance / (variance + 0.35**2)
     light = filter_light(lL)
-    for found, plain in (light.slope, slope), (light.offset, mean - slope * mean):
-        averaged = average_cells(light.row_weights @ found)[1:-1, 1:-1]
+    for filtered, plain in (light.slope, slope), (light.offset, mean - slope * mean):
+        averaged = average_cells(light.row_weights @ filtered)[1:-1, 1:-1]
         assert np.abs(averaged - uniform_filter(plain, width)[1:-1, 1:-1]).max() < 0.02
 
 

@@ -17,7 +17,7 @@ SIDE = 500  # pixels: of larger photographs every second, third ... is taken
 
 @pytest.fixture
 def assembled(shared):
-    """assembled(folder, ...) -> the Assembly of a folder of photographs, as `hdrlab assemble` makes it."""
+    """assembled(folder, ...) -> the Assembly of a folder of photos, made like `hdrlab assemble` does."""
 
     def assemble(folder, times="exif", mask=None, stops=None):
         top, _, rest = folder.partition("/")
@@ -46,22 +46,22 @@ SOUND = [
 
 @pytest.mark.parametrize(("folder", "options", "spread"), SOUND)
 def test_a_consistent_real_bracket_gives_no_warning(assembled, folder, options, spread):
-    found = assembled(folder, **options)
-    assert found.doubts == () and found.fallback == ""
-    assert found.spread <= spread + 5e-4 and np.all(np.isfinite(found.E))
-    assert found.moving is None or not found.moving.any()  # nothing is taken for motion
+    assembly = assembled(folder, **options)
+    assert assembly.doubts == () and assembly.fallback == ""
+    assert assembly.spread <= spread + 5e-4 and np.all(np.isfinite(assembly.E))
+    assert assembly.moving is None or not assembly.moving.any()  # nothing is taken for motion
 
 
 def test_the_dark_wood_of_the_church_is_as_dark_and_as_red_as_in_the_map_of_its_author(
     assembled, shared
 ):
-    """The scans have a black floor, and twelve frames that show it must not outvote the other four."""
-    found = assembled("memorial", times=str(shared("memorial") / LIST), mask="0000FF")
+    """The scans have a black floor; twelve frames that show it must not outvote the other four."""
+    assembly = assembled("memorial", times=str(shared("memorial") / LIST), mask="0000FF")
     author = radiance.read_radiance(shared("memorial") / "memorial.hdr")[::2, ::2]
-    is_exposed = (found.bracket.images > 30) & (found.bracket.images < 225)
-    is_compared = is_exposed.all(axis=-1).any(axis=0) & (found.quality == 0)
+    is_exposed = (assembly.bracket.images > 30) & (assembly.bracket.images < 225)
+    is_compared = is_exposed.all(axis=-1).any(axis=0) & (assembly.quality == 0)
     is_compared &= author.min(axis=-1) > 0
-    E = found.E[is_compared]
+    E = assembly.E[is_compared]
     truth = author[is_compared]
     off = np.log2(E / truth)
     off -= np.median(off, axis=0)
@@ -72,8 +72,8 @@ def test_the_dark_wood_of_the_church_is_as_dark_and_as_red_as_in_the_map_of_its_
 
 def test_scans_that_fit_already_stay_in_place_at_full_size(shared):
     taken = read_bracket((shared("memorial"),), "exif", "0000FF", None, note=print, detail=print)
-    found = register(taken.images)
-    assert np.array_equal(found.homographies, np.broadcast_to(np.eye(3), (16, 3, 3)))
+    registration = register(taken.images)
+    assert np.array_equal(registration.homographies, np.broadcast_to(np.eye(3), (16, 3, 3)))
 
 
 def test_true_times_are_not_changed(assembled, shared):
@@ -84,19 +84,19 @@ def test_true_times_are_not_changed(assembled, shared):
 
 
 def test_wrong_times_of_a_phone_are_replaced_by_relative_times_with_a_warning(assembled):
-    found = assembled("tripod_phone")
-    assert found.spread < 0.25 and found.E.any() and found.fallback == ""
-    assert any("relative exposure times" in doubt for doubt in found.doubts)
+    assembly = assembled("tripod_phone")
+    assert assembly.spread < 0.25 and assembly.E.any() and assembly.fallback == ""
+    assert any("relative exposure times" in doubt for doubt in assembly.doubts)
 
 
 @pytest.mark.parametrize("options", [{"stops": 1}, {"times": "estimate"}])
 def test_photos_from_different_viewpoints_give_warnings(assembled, options):
-    found = assembled("crusader/frames", **options)
-    assert found.doubts and np.all(np.isfinite(found.E)) and found.E.any()
+    assembly = assembled("crusader/frames", **options)
+    assert assembly.doubts and np.all(np.isfinite(assembly.E)) and assembly.E.any()
 
 
 def test_photos_without_times_become_a_map_with_relative_times_and_a_warning(assembled):
-    found = assembled("mertens_house")
-    assert found.fallback == "" and found.E.any()
-    assert np.all(np.diff(found.bracket.times) > 0)
-    assert any("relative exposure times" in doubt for doubt in found.doubts)
+    assembly = assembled("mertens_house")
+    assert assembly.fallback == "" and assembly.E.any()
+    assert np.all(np.diff(assembly.bracket.times) > 0)
+    assert any("relative exposure times" in doubt for doubt in assembly.doubts)

@@ -18,7 +18,9 @@ pytestmark = pytest.mark.papers
 
 CAMERAS = {"mann": ["gamma", "linear"], "marginal": ["film"]}
 METHODS = [name for name in catalogue.names("response") if name != "linear"]
-CASES = [(name, one) for name in METHODS for one in CAMERAS.get(name, sorted(RESPONSES))]
+CASES = [
+    (method, response) for method in METHODS for response in CAMERAS.get(method, sorted(RESPONSES))
+]
 
 
 @pytest.mark.parametrize("law", laws.CONSISTENCY, ids=lambda law: law.__name__)
@@ -37,9 +39,9 @@ def taken(decades):
 @pytest.mark.parametrize("method", ["auto", *METHODS])
 def test_the_response_of_the_prior_is_used_if_the_photos_contradict_their_times(taken, method):
     wrong = replace(taken, times=taken.times * [1, 1, 1, 10_000])
-    found = pipeline.assemble(wrong, align="none", response=method)
-    assert any("check the exposure times" in doubt for doubt in found.doubts)
-    assert found.fallback and np.all(np.isfinite(found.E)) and found.E.any()
+    recovered = pipeline.assemble(wrong, align="none", response=method)
+    assert any("check the exposure times" in doubt for doubt in recovered.doubts)
+    assert recovered.fallback and np.all(np.isfinite(recovered.E)) and recovered.E.any()
 
 
 def test_the_response_of_the_prior_is_used_if_a_method_finds_none(taken, monkeypatch):
@@ -47,9 +49,9 @@ def test_the_response_of_the_prior_is_used_if_a_method_finds_none(taken, monkeyp
         raise InputError("expected the moon")
 
     monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
-    found = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
-    assert laws.curve_error(found.g, true_g("film")) < 0.05 and not found.fallback
-    (doubt,) = found.doubts
+    recovered = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
+    assert laws.curve_error(recovered.g, true_g("film")) < 0.05 and not recovered.fallback
+    (doubt,) = recovered.doubts
     assert "expected the moon" in doubt
 
 

@@ -44,22 +44,22 @@ def three():
 
 
 def part(g):
-    """Return by what factor the radiances of a gray wall's channels differ at most."""
+    """Return the largest factor between the radiances of a gray wall's channels."""
     return np.exp(np.ptp(g[LEVELS], axis=1).max())
 
 
 def error(g):
-    """Return the root mean square error of a response in stops, the best unit for each channel."""
+    """Return the root mean square error of a response in stops, after fitting the unit of each channel."""
     off = (g - true_g(bend)[:, None])[LEVELS] / np.log(2)
     return np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
 
 
 def test_a_gray_wall_in_three_photos_stays_gray(three):
     separate = debevec.recover(three.images, three.times)
-    found = pipeline.assemble(three, align="none", times="stated")
-    assert part(separate) > 2 and part(found.g) < 1.001
-    assert error(found.g) < min(0.2, error(separate))
-    assert any("response: one curve by" in detail for detail in found.details)
+    assembly = pipeline.assemble(three, align="none", times="stated")
+    assert part(separate) > 2 and part(assembly.g) < 1.001
+    assert error(assembly.g) < min(0.2, error(separate))
+    assert any("response: one curve by" in detail for detail in assembly.details)
 
 
 def s_curve(strength):
@@ -83,7 +83,7 @@ def shoot_channels(E, channel_responses, *, full_well=20_000):
 
 
 def measure_map_error(E, taken, g):
-    """Return the median error of the map in stops, with the best unit for each channel."""
+    """Return the median error of the map in stops, after fitting the unit of each channel."""
     merged = merge_with_quality(taken.images, taken.times, g, gaussian(), method="shot")
     is_measured = merged.quality == 0
     off = np.log2(merged.E[is_measured] / E[is_measured])
@@ -110,8 +110,8 @@ def test_the_map_is_as_exact_as_with_the_better_of_one_curve_and_three(scene, ch
             g = method(taken.images, taken.times)
             alternatives.append(measure_map_error(E, taken, g))
     choice = recovery.choose_response("auto", taken)
-    found = choice.method(taken.images, taken.times, valid=None)
-    assert measure_map_error(E, taken, found) <= min(alternatives) + 0.003
+    curve = choice.method(taken.images, taken.times, valid=None)
+    assert measure_map_error(E, taken, curve) <= min(alternatives) + 0.003
 
 
 def test_channels_stay_together_if_ties_are_close_and_part_if_they_are_loose():

@@ -31,18 +31,18 @@ def test_a_frame_that_contradicts_all_others_is_dropped_with_a_warning_only_if_i
     rivals, relative, doubted, monkeypatch
 ):
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((3,), rivals))
-    found = corrections.drop_outlying_frames(STATE, has_relative_times=relative)
-    assert found.bracket.names == ("a", "b", "c", "e")
-    assert (len(found.doubts), len(found.notes)) == (doubted, not doubted)
-    (said,) = found.doubts + found.notes
-    assert ": d;" in said and ("b or c" in said) == doubted
+    assembly = corrections.drop_outlying_frames(STATE, has_relative_times=relative)
+    assert assembly.bracket.names == ("a", "b", "c", "e")
+    assert (len(assembly.doubts), len(assembly.notes)) == (doubted, not doubted)
+    (message,) = assembly.doubts + assembly.notes
+    assert ": d;" in message and ("b or c" in message) == doubted
 
 
 def test_more_than_one_dropped_frame_is_a_warning(monkeypatch):
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((0, 3), ()))
-    found = corrections.drop_outlying_frames(STATE, has_relative_times=True)
-    assert found.bracket.names == ("b", "c", "e")
-    assert found.doubts and not found.notes
+    assembly = corrections.drop_outlying_frames(STATE, has_relative_times=True)
+    assert assembly.bracket.names == ("b", "c", "e")
+    assert assembly.doubts and not assembly.notes
 
 
 @pytest.mark.parametrize(
@@ -59,9 +59,9 @@ def test_relative_times_replace_those_of_a_worthless_map_if_they_halve_the_limit
     relative = replace(TAKEN, times=2.0 ** np.arange(5))
     monkeypatch.setattr(timing, "correct_times", correct)
     monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
-    found = timing.refine_times(STATE, "auto", 0.7)
-    assert np.array_equal(found.bracket.times, (relative if replaced else TAKEN).times)
-    assert ["0.70 stops" in doubt for doubt in found.doubts] == [True] * replaced
+    refined = timing.refine_times(STATE, "auto", 0.7)
+    assert np.array_equal(refined.bracket.times, (relative if replaced else TAKEN).times)
+    assert ["0.70 stops" in doubt for doubt in refined.doubts] == [True] * replaced
 
 
 def test_photos_that_get_darker_with_longer_times_are_named():

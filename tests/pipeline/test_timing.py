@@ -73,11 +73,11 @@ def test_relative_times_of_a_linear_camera_are_right(room):
 
 
 def test_equal_times_of_different_photographs_are_estimated_with_a_warning(taken):
-    found = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
-    assert "relative" in found.doubts[0]
-    assert "--stops" in found.doubts[0]
-    assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
-    assert found.bracket.has_relative_times
+    assembly = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
+    assert "relative" in assembly.doubts[0]
+    assert "--stops" in assembly.doubts[0]
+    assert np.all(np.diff(assembly.bracket.times) > 0) and assembly.spread < 0.1
+    assert assembly.bracket.has_relative_times
     with pytest.raises(ValueError, match="at least two different exposures"):
         pipeline.assemble(replace(taken, times=np.full(5, 0.01)), times="stated")
 
@@ -102,9 +102,9 @@ def test_times_in_the_wrong_order_are_estimated_with_a_warning_unless_they_are_t
         complete_times(shuffled, "stated")
     corrected = complete_times(shuffled, "correct")
     estimated = complete_times(shuffled, "estimate")
-    for found in (corrected, estimated):
-        assert np.array_equal(found.bracket.images, taken.images)
-        assert found.bracket.has_relative_times
+    for completed in (corrected, estimated):
+        assert np.array_equal(completed.bracket.images, taken.images)
+        assert completed.bracket.has_relative_times
     assert "relative" in corrected.doubts[0]
     assert "relative" in estimated.notes[0]
     assert not estimated.doubts
@@ -114,21 +114,20 @@ def test_times_in_the_wrong_order_are_estimated_with_a_warning_unless_they_are_t
 
 
 def test_true_times_are_not_changed_and_give_no_note(taken):
-    found = pipeline.assemble(taken)
-    assert found.bracket.times.tobytes() == taken.times.tobytes()
-    assert not found.doubts and not found.fallback
-    assert found.notes == ()
+    assembly = pipeline.assemble(taken)
+    assert assembly.bracket.times.tobytes() == taken.times.tobytes()
+    assert not assembly.doubts and not assembly.fallback
+    assert assembly.notes == ()
 
 
 def test_rough_times_are_corrected_unless_times_is_stated():
     room = scenes.room((280, 420))
     taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     rough = replace(taken, times=taken.times * [1, 1, 1.1, 1, 1])
-    found, stated = (
-        pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated")
-    )
+    assembly = pipeline.assemble(rough, align="none", times="correct")
+    stated = pipeline.assemble(rough, align="none", times="stated")
     assert stated.bracket.times.tobytes() == rough.times.tobytes()
-    assert found.spread < stated.spread and "times estimated" in found.notes[0]
+    assert assembly.spread < stated.spread and "times estimated" in assembly.notes[0]
 
 
 @pytest.mark.quick
@@ -136,22 +135,24 @@ def test_a_rough_time_is_corrected_before_the_response_is_found():
     room = scenes.room((200, 300))
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
     rough = replace(taken, times=taken.times * [1, 1, 1.1, 1])
-    found = next(one for one in stages.assemble_steps(rough, align="none") if one.stage == "times")
-    assert np.abs(np.log2(found.bracket.times / taken.times)).max() < 0.03
-    assert found.g is None and "most frame 3 -0.1" in found.notes[0]  # of log2(1.1) stops
+    assembly = next(
+        stage for stage in stages.assemble_steps(rough, align="none") if stage.stage == "times"
+    )
+    assert np.abs(np.log2(assembly.bracket.times / taken.times)).max() < 0.03
+    assert assembly.g is None and "most frame 3 -0.1" in assembly.notes[0]  # of log2(1.1) stops
 
 
 @pytest.fixture(scope="module")
 def mistaken():
-    """Five photographs of which all stated times but the ends' are wrong."""
+    """Five photos whose stated times are all wrong, except those of the first and the last."""
     room = scenes.room((150, 219))
     times = camera.times_around(room, 5, stops=2)
     return bracket(camera.shoot(room, times).images, times * [1, 2.2, 0.7, 1.3, 1], list("abcde"))
 
 
 def test_misaligned_photos_correct_no_times_and_report_no_contradictions(mistaken, monkeypatch):
-    def lie_apart(*given, **named):
-        aligned = align_bracket(*given, **named)
+    def lie_apart(*arguments, **named):
+        aligned = align_bracket(*arguments, **named)
         return replace(aligned, doubts=("a and b could not be aligned",), is_misaligned=True)
 
     align_bracket = registration.align_bracket
@@ -166,8 +167,8 @@ def test_times_that_leave_nothing_to_compare_are_reported_without_a_number(mista
     (state, *_) = pipeline.assemble_steps(
         replace(mistaken, times=2.0 ** np.arange(5) / 64), align="none"
     )
-    (said,) = refine_times(state, "auto", np.inf).doubts
-    assert "inf" not in said and "relative exposure times" in said
+    (warning,) = refine_times(state, "auto", np.inf).doubts
+    assert "inf" not in warning and "relative exposure times" in warning
 
 
 @pytest.mark.parametrize(("factor", "is_replaced"), [(0.9, True), (1.05, False)])
