@@ -6,17 +6,19 @@ signature.
 """
 
 import warnings
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from hdrlab.core import steps
+from hdrlab.core.arrays import F32, F64
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.threads import run_in_background
+from hdrlab.core.threads import Task, run_in_background
 from hdrlab.diagnostics import causes, consistency, motion, tones
 from hdrlab.diagnostics.causes import MAX_EXPLAINED_SPREAD
+from hdrlab.diagnostics.contradictions import Contradictions
 from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable
@@ -25,6 +27,7 @@ from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.merging import MergeRecord, merge_photos
 from hdrlab.pipeline.options import FLARE, GHOSTS, MERGES, TIMES, WEIGHTS, Options
 from hdrlab.radiance import scales
+from hdrlab.radiance.merge import Merged
 
 __all__ = [
     "CONTRADICTION",
@@ -178,41 +181,26 @@ def _merge_from_method(method: str) -> str:
 
 
 def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
+    """Run the stages one after the other, and yield the state after each."""
     completed = timing.complete_times(bracket, options.times)
-    bracket = completed.bracket
-    has_relative_times = completed.are_relative
-    state = registration.align_bracket(
-        bracket,
-        options.align,
-        options.response,
-        in_place=options.in_place,
-        removes_ghosts=options.ghosts != "none",
-    )
-    state = replace(state, notes=(*completed.notes, *state.notes))
+    state = _align(completed, options)
     yield state
 
     # Misaligned photos contradict each other, so contradictions are no news from here on.
     is_misaligned = state.is_misaligned
-    state = replace(state, doubts=(*bracket.damaged, *completed.doubts, *state.doubts))
+    state = replace(state, doubts=(*completed.bracket.damaged, *completed.doubts, *state.doubts))
     checked_bracket = state.bracket
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
     choice = recovery.choose_response(options.response, state.bracket)
     has_true_times = choice.spread <= timing.MAX_CONSISTENT_STOPS
     if options.times == "estimate" or (options.times == "correct" and not has_true_times):
-        is_requested = options.times == "estimate" and not has_relative_times
-        refined = timing.refine_times(
+        state = _refine_times(
             state,
-            options.response,
+            options,
             choice.spread,
-            is_requested=is_requested,
-            has_stated_times=not has_relative_times,
-            is_aligned=not is_misaligned or options.times == "estimate",
+            has_relative_times=completed.are_relative,
+            is_misaligned=is_misaligned,
         )
-        is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
-        has_warning = refined.doubts != state.doubts
-        # Notes on times that stay are news only to those who asked for an estimate.
-        if is_changed or is_requested or has_warning:
-            state = refined
     if options.times != "stated":
         state = replace(state, stage="times")
         yield state
@@ -220,103 +208,36 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
     if not has_true_times:
         state = corrections.drop_outlying_frames(
             state,
-            has_relative_times=has_relative_times,
+            has_relative_times=completed.are_relative,
             keeps_times=options.times == "stated",
         )
         choice = recovery.choose_response(options.response, state.bracket)
     if state.bracket is not checked_bracket:
         contradictions_task = checks.start_finding_contradictions(state.bracket)
-    response = recovery.find_response(options.response, choice, state.bracket)
-    state = replace(
-        state,
-        stage="response",
-        g=response.g,
-        details=(*state.details, *choice.notes),
-        doubts=(*state.doubts, *response.doubts),
-        fallback=response.fallback,
-    )
+    state = _find_response(state, options, choice)
     yield state
 
-    images = state.bracket.images
-    times = state.bracket.times
-    valid = state.bracket.valid
-    pixel_weights = WEIGHTS[options.weight](response.g)
-    noise = dark_pixels.measure_noise(images[np.argmax(times)])
-    merge = partial(merge_photos, method=options.merge, noise=noise)
-    # A sample is merged and checked first, because the merge of all pixels may free the photos.
-    grid = np.s_[:, *consistency.choose_grid(images.shape[1:3])]
-    sample = images[grid]
-    if sample.shape != images.shape:
-        sample = sample.copy()  # contiguous, because it is read several times
-    sample_valid = None if valid is None else valid[grid]
-    sample_map = merge(sample, times, response.g, pixel_weights, valid=sample_valid, repair=False).E
-    motion_task = run_in_background(
-        partial(motion.measure_motion, images, times, response.g, pixel_weights, valid=valid),
-        pixels=images[0].size,
+    plan = _plan_merge(state, options)
+    measurements = _measure_photos(state, plan, contradictions_task)
+    removes_ghosts = _should_remove_ghosts(
+        measurements.motion, options, is_misaligned=is_misaligned
     )
-    medians_task = run_in_background(
-        partial(consistency.measure_level_exposures, sample, times, sample_map, valid=sample_valid),
-        pixels=images[0].size,
-    )
-    blocks_task = run_in_background(
-        partial(
-            tones.measure_block_errors,
-            sample,
-            times,
-            response.g,
-            sample_map,
-            valid=sample_valid,
-        ),
-        pixels=images[0].size,
-    )
-    measured_motion = motion_task.result()
-    medians = medians_task.result()
-    block_errors = blocks_task.result()
-    contradictions = contradictions_task.result()
-
-    # Photos that "mtb" could not align may be rotated, and "auto" would align them. With any other
-    # method, something moved that no alignment undoes.
-    is_explained_by_rotation = is_misaligned and options.align == "mtb"
-    is_moving = causes.is_moving(*measured_motion)
-    may_have_ghosts = is_moving and not is_explained_by_rotation
-    removes_ghosts = options.ghosts in ("regions", "reference") or (
-        options.ghosts == "auto" and may_have_ghosts
-    )
-    is_usable = not state.fallback and not checks.is_worthless(medians)
-    if options.release and is_usable and not removes_ghosts:
-        state = replace(state, bracket=replace(state.bracket, images=images[:0].copy()))
-        images = images.view(Expendable)
-    # The certainty is measured first, because the merge may free the photos.
-    certainty = dark_pixels.measure_color_certainty(images, times, valid=valid, noise=noise)
-    merged = merge(images, times, response.g, pixel_weights, valid=valid)
-    state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
-    neutral = np.ones(3, np.float32)
-    if certainty is not None:
-        neutral = dark_pixels.measure_neutral(state.E, certainty)
-        E = dark_pixels.fade_to_neutral(merged.E, certainty, neutral=neutral, in_place=True)
-        state = replace(state, E=E)
-        black_fraction = dark_pixels.measure_black_fraction(certainty)
-        if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
-            state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
+    is_usable = not state.fallback and not checks.is_worthless(measurements.medians)
+    frees_photos = options.release and is_usable and not removes_ghosts
+    merged = _merge(state, plan, frees_photos=frees_photos)
+    state = merged.state
     if not options.release:
-        record = MergeRecord(
-            method=options.merge,
-            pixel_weights=pixel_weights,
-            noise=noise,
-            certainty=certainty,
-            neutral=neutral,
-        )
-        state = replace(state, record=record)
+        state = replace(state, record=_make_record(merged, plan, options))
     yield state
 
     if removes_ghosts:
         state = corrections.remove_ghosts(
             state,
             options.ghosts,
-            pixel_weights,
-            merge,
-            certainty=certainty,
-            neutral=neutral,
+            plan.pixel_weights,
+            plan.merge,
+            certainty=merged.certainty,
+            neutral=merged.neutral,
             is_misaligned=is_misaligned,
         )
         if state.moving is not None:
@@ -325,25 +246,249 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state = corrections.remove_glare(state)
         yield state
 
-    moving = None if state.moving is None else state.moving[grid[1:]]
-    part_errors = tones.measure_part_errors(block_errors, moving=moving)
+    checked = _check_map(
+        state, measurements, options, is_misaligned=is_misaligned, removes_ghosts=removes_ghosts
+    )
+    if is_misaligned:
+        checked = replace(checked, doubts=state.doubts)
+    yield checked
+
+
+@dataclass(frozen=True, kw_only=True)
+class _MergePlan:
+    """How the photos are merged.
+
+    Attributes
+    ----------
+    merge : function
+        `merge_photos` with the method and the noise of this bracket.
+    pixel_weights : (n,)
+        Weights of the pixel values.
+    noise : float
+        Noise of dark pixels in the longest photo, in pixel values.
+    """
+
+    merge: Callable[..., Merged]
+    pixel_weights: F64
+    noise: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Measurements:
+    """What was measured in the photos before the merge, because the merge may free them.
+
+    Attributes
+    ----------
+    grid : (slice, slice)
+        Rows and columns of the pixels that were compared, except for `motion`.
+    medians : (P, C, 256)
+        See `Assembly`.
+    block_errors : BlockErrors
+        Differences between the map of the grid and the photos.
+    motion : Motion
+        How much of the image moved.
+    contradictions : Contradictions
+        Photos that contradict each other.
+    """
+
+    grid: tuple[slice, slice]
+    medians: F64
+    block_errors: tones.BlockErrors
+    motion: motion.Motion
+    contradictions: Contradictions
+
+
+@dataclass(frozen=True, kw_only=True)
+class _MergedState:
+    """The state after the merge, and the colors of its dark pixels, which `remove_ghosts` needs too.
+
+    Attributes
+    ----------
+    state : Assembly
+        The state with its map.
+    certainty : (h, w) float32 or None
+        How certain the color of each pixel is, see `dark_pixels.measure_color_certainty`.
+    neutral : (3,) float32
+        The color to which uncertain pixels fade.
+    """
+
+    state: Assembly
+    certainty: F32 | None
+    neutral: F32
+
+
+def _align(completed: timing.CompletedTimes, options: Options) -> Assembly:
+    """Align the photos, and add the notes about their times."""
+    state = registration.align_bracket(
+        completed.bracket,
+        options.align,
+        options.response,
+        in_place=options.in_place,
+        removes_ghosts=options.ghosts != "none",
+    )
+    return replace(state, notes=(*completed.notes, *state.notes))
+
+
+def _refine_times(
+    state: Assembly,
+    options: Options,
+    spread: float,
+    *,
+    has_relative_times: bool,
+    is_misaligned: bool,
+) -> Assembly:
+    """Return the state with times that are refined by the pixels, or unchanged if these confirm them."""
+    is_requested = options.times == "estimate" and not has_relative_times
+    refined = timing.refine_times(
+        state,
+        options.response,
+        spread,
+        is_requested=is_requested,
+        has_stated_times=not has_relative_times,
+        is_aligned=not is_misaligned or options.times == "estimate",
+    )
+    is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
+    has_warning = refined.doubts != state.doubts
+    # Notes on times that stay are news only to those who asked for an estimate.
+    if is_changed or is_requested or has_warning:
+        return refined
+    return state
+
+
+def _find_response(state: Assembly, options: Options, choice: recovery.ResponseChoice) -> Assembly:
+    """Return the state with the camera's response."""
+    response = recovery.find_response(options.response, choice, state.bracket)
+    return replace(
+        state,
+        stage="response",
+        g=response.g,
+        details=(*state.details, *choice.notes),
+        doubts=(*state.doubts, *response.doubts),
+        fallback=response.fallback,
+    )
+
+
+def _plan_merge(state: Assembly, options: Options) -> _MergePlan:
+    """Measure the noise of the longest photo, and choose the weights of the merge."""
+    bracket = state.bracket
+    noise = dark_pixels.measure_noise(bracket.images[np.argmax(bracket.times)])
+    return _MergePlan(
+        merge=partial(merge_photos, method=options.merge, noise=noise),
+        pixel_weights=WEIGHTS[options.weight](state.g),
+        noise=noise,
+    )
+
+
+def _measure_photos(
+    state: Assembly, plan: _MergePlan, contradictions_task: Task[Contradictions]
+) -> _Measurements:
+    """Merge a sample of the pixels, and compare the photos with it and with each other."""
+    images = state.bracket.images
+    times = state.bracket.times
+    valid = state.bracket.valid
+    g = state.g
+    grid = consistency.choose_grid(images.shape[1:3])
+    sample = images[:, *grid]
+    if sample.shape != images.shape:
+        sample = sample.copy()  # contiguous, because it is read several times
+    sample_valid = None if valid is None else valid[:, *grid]
+    sample_map = plan.merge(
+        sample, times, g, plan.pixel_weights, valid=sample_valid, repair=False
+    ).E
+    motion_task = run_in_background(
+        partial(motion.measure_motion, images, times, g, plan.pixel_weights, valid=valid),
+        pixels=images[0].size,
+    )
+    medians_task = run_in_background(
+        partial(consistency.measure_level_exposures, sample, times, sample_map, valid=sample_valid),
+        pixels=images[0].size,
+    )
+    blocks_task = run_in_background(
+        partial(tones.measure_block_errors, sample, times, g, sample_map, valid=sample_valid),
+        pixels=images[0].size,
+    )
+    return _Measurements(
+        grid=grid,
+        motion=motion_task.result(),
+        medians=medians_task.result(),
+        block_errors=blocks_task.result(),
+        contradictions=contradictions_task.result(),
+    )
+
+
+def _should_remove_ghosts(
+    measured: motion.Motion, options: Options, *, is_misaligned: bool
+) -> bool:
+    """Return whether to remove ghosts, because of the option `ghosts` or because something moved."""
+    if options.ghosts != "auto":
+        return options.ghosts != "none"
+    # Photos that "mtb" could not align may be rotated, and "auto" would align them. With any other
+    # method, something moved that no alignment undoes.
+    is_explained_by_rotation = is_misaligned and options.align == "mtb"
+    is_moving = causes.is_moving(*measured)
+    return is_moving and not is_explained_by_rotation
+
+
+def _merge(state: Assembly, plan: _MergePlan, *, frees_photos: bool) -> _MergedState:
+    """Merge the photos, and fade the colors of pixels that are black in every photo."""
+    images = state.bracket.images
+    times = state.bracket.times
+    valid = state.bracket.valid
+    if frees_photos:
+        state = replace(state, bracket=replace(state.bracket, images=images[:0].copy()))
+        images = images.view(Expendable)
+    # The certainty is measured first, because the merge may free the photos.
+    certainty = dark_pixels.measure_color_certainty(images, times, valid=valid, noise=plan.noise)
+    merged = plan.merge(images, times, state.g, plan.pixel_weights, valid=valid)
+    state = replace(state, stage="merge", E=merged.E, quality=merged.quality)
+    if certainty is None:
+        return _MergedState(state=state, certainty=None, neutral=np.ones(3, np.float32))
+    neutral = dark_pixels.measure_neutral(state.E, certainty)
+    E = dark_pixels.fade_to_neutral(merged.E, certainty, neutral=neutral, in_place=True)
+    state = replace(state, E=E)
+    black_fraction = dark_pixels.measure_black_fraction(certainty)
+    if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
+        state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
+    return _MergedState(state=state, certainty=certainty, neutral=neutral)
+
+
+def _make_record(merged: _MergedState, plan: _MergePlan, options: Options) -> MergeRecord:
+    """Return the record of the merge that `Assembly.why` needs."""
+    return MergeRecord(
+        method=options.merge,
+        pixel_weights=plan.pixel_weights,
+        noise=plan.noise,
+        certainty=merged.certainty,
+        neutral=merged.neutral,
+    )
+
+
+def _check_map(
+    state: Assembly,
+    measurements: _Measurements,
+    options: Options,
+    *,
+    is_misaligned: bool,
+    removes_ghosts: bool,
+) -> Assembly:
+    """Return the finished state with warnings about the map."""
+    moving = None if state.moving is None else state.moving[measurements.grid]
+    part_errors = tones.measure_part_errors(measurements.block_errors, moving=moving)
+    measured_motion = measurements.motion
     if state.moving is not None or is_misaligned:
         measured_motion = motion.Motion(fraction=0.0, band_stops=0.0)
     elif removes_ghosts:
         # The photos contradict each other, but nothing moved.
         measured_motion = measured_motion._replace(fraction=0.0)
-    checked = checks.check_map(
+    return checks.check_map(
         state,
-        medians,
-        contradictions,
+        measurements.medians,
+        measurements.contradictions,
         measured_motion.fraction,
         measured_motion.band_stops,
         part_errors,
         options=options,
     )
-    if is_misaligned:
-        checked = replace(checked, doubts=state.doubts)
-    yield checked
 
 
 def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
