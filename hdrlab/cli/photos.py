@@ -1,6 +1,6 @@
 """The commands that start from photos: `assemble` and `calibrate`."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -173,35 +173,24 @@ def assemble(
     hdrlab writes the map even if there are warnings. The report and the header of an .hdr or .exr
     file repeat them. If nothing is wrong, hdrlab prints one line that begins with OK.
     """
-    from concurrent.futures import ThreadPoolExecutor
-
     from hdrlab import pipeline
-    from hdrlab.io import photos as photo_files, radiance
-    from hdrlab.io.files import require_folder_name, require_replaceable, require_suffix
-    from hdrlab.io.maps import layers
-    from hdrlab.pipeline import pictures
     from hdrlab.show.pages import wording
 
     # bad options are reported before the work starts
-    if times == "stated":
-        raise InputError("--times stated has a new name: use --keep-times")
-    if stops and times not in brackets.TIMES_KEYWORDS:
-        raise InputError(f"--stops and --times {times} exclude each other; pass one of them")
+    _check_times_options(times, stops)
     recover = brackets.saved_curve(response) if isinstance(response, Path) else response
     meter_reading = common.parse_meter_reading(calibrate) if calibrate else None
-    if report:
-        require_folder_name(report)
-    if uncertainty:
-        require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
+    outputs = _Outputs(
+        radiance_map=out,
+        picture=picture,
+        report=report,
+        uncertainty=uncertainty,
+        evidence=_choose_evidence_path(out) if why else None,
+    )
+    _check_outputs(outputs)
     if noise_file and not uncertainty:
         raise InputError("--noise is used only with --uncertainty; add it, or leave --noise out")
     measured_noise = _MeasuredNoise(noise_file) if noise_file else None
-    if why:
-        # imported only here, because it imports more of SciPy than the other options need
-        from hdrlab.pipeline import evidence_file
-
-        evidence = evidence_file.evidence_path(out)
-        require_replaceable(evidence)
     if all_brackets:
         _assemble_each(ctx, photos)
         return
@@ -218,18 +207,8 @@ def assemble(
     )
     noise = measured_noise.of_bracket(bracket, remarks) if measured_noise else None
     if meter_reading:
-        height, width = bracket.images.shape[1:3]
-        x, y, _ = meter_reading
-        if x >= width or y >= height:
-            raise InputError(
-                f"--calibrate: pixel {x},{y} is outside of the photos, which have {width} x {height} "
-                "pixels"
-            )
-    times_mode = "correct"
-    if times == "estimate":
-        times_mode = "estimate"
-    elif keep_times:
-        times_mode = "stated"
+        _require_inside(meter_reading, bracket)
+    times_mode = _choose_times_mode(times, keep_times=keep_times)
     steps = pipeline.assemble_steps(
         bracket,
         in_place=True,
@@ -250,66 +229,167 @@ def assemble(
         assembly = pipeline.measure_deviation(assembly, noise)
     if meter_reading:
         assembly = pipeline.calibrate(assembly, *meter_reading)
-    if assembly.fallback and (picture or report):
+    assembly = _print_remarks(assembly, remarks, has_picture=outputs.has_picture)
+    common.echo_warnings(assembly.doubts if verbose else _shorten(assembly.doubts))
+    recipe: dict[str, object] = {
+        "response": response,
+        "align": align,
+        "weight": weight,
+        "ghosts": ghosts,
+        "flare": flare,
+        "merge": merge,
+        "times": times_mode,
+    }
+    descriptions = _write_outputs(outputs, assembly, operator, recipe, remarks)
+    click.echo(wording.summarize_assembly(assembly, descriptions))
+    if strict and assembly.doubts:
+        ctx.exit(EXIT_DOUBTFUL_MAP)
+
+
+@dataclass(frozen=True)
+class _Outputs:
+    """The files that `assemble` writes. A path is None if the user did not ask for the file."""
+
+    radiance_map: Path
+    picture: Path | None
+    report: Path | None
+    uncertainty: Path | None
+    evidence: Path | None
+
+    @property
+    def has_picture(self) -> bool:
+        """Whether the map is tone-mapped, for an image file or for the report."""
+        return bool(self.picture or self.report)
+
+
+def _check_times_options(times: str, stops: float | None) -> None:
+    """Raise an InputError if --times has an old value, or contradicts --stops."""
+    if times == "stated":
+        raise InputError("--times stated has a new name: use --keep-times")
+    if stops and times not in brackets.TIMES_KEYWORDS:
+        raise InputError(f"--stops and --times {times} exclude each other; pass one of them")
+
+
+def _choose_evidence_path(map_path: Path) -> Path:
+    """Return the path of the file for `hdrlab why`, which belongs to a map."""
+    # imported only here, because it imports more of SciPy than the other options need
+    from hdrlab.pipeline import evidence_file
+
+    return evidence_file.evidence_path(map_path)
+
+
+def _check_outputs(outputs: _Outputs) -> None:
+    """Raise an InputError if one of the files cannot be written under its name."""
+    from hdrlab.io.files import require_folder_name, require_replaceable, require_suffix
+
+    if outputs.report:
+        require_folder_name(outputs.report)
+    if outputs.uncertainty:
+        require_suffix(outputs.uncertainty, [".exr"], "a map with its standard deviation")
+    if outputs.evidence:
+        require_replaceable(outputs.evidence)
+
+
+def _require_inside(meter_reading: tuple[int, int, float], bracket: "Bracket") -> None:
+    """Raise an InputError if the pixel of a meter reading is outside of the photos."""
+    height, width = bracket.images.shape[1:3]
+    x, y, _ = meter_reading
+    if x >= width or y >= height:
+        raise InputError(
+            f"--calibrate: pixel {x},{y} is outside of the photos, which have {width} x {height} "
+            "pixels"
+        )
+
+
+def _choose_times_mode(times: str, *, keep_times: bool) -> str:
+    """Return the value of the pipeline's option `times` for --times and --keep-times."""
+    if times == "estimate":
+        return "estimate"
+    if keep_times:
+        return "stated"
+    return "correct"
+
+
+def _print_remarks(assembly: "Assembly", remarks: "_Remarks", *, has_picture: bool) -> "Assembly":
+    """Print the notes and details of an assembly, and add those of reading its photos to it."""
+    from hdrlab.pipeline import pictures
+
+    if assembly.fallback and has_picture:
         assembly = assembly.with_note(f"{pictures.FUSION_NOTE}, because {assembly.fallback}")
     for note in assembly.notes:
         remarks.note(note)
     for detail in assembly.details:
         remarks.detail(detail)
-    assembly = replace(assembly, notes=tuple(remarks.notes), details=tuple(remarks.details))
-    common.echo_warnings(assembly.doubts if verbose else _shorten(assembly.doubts))
+    return replace(assembly, notes=tuple(remarks.notes), details=tuple(remarks.details))
+
+
+def _write_outputs(
+    outputs: _Outputs,
+    assembly: "Assembly",
+    operator: str,
+    recipe: dict[str, object],
+    remarks: "_Remarks",
+) -> list[str]:
+    """Write all files, and return a description of each."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from hdrlab.io import photos as photo_files, radiance
+    from hdrlab.pipeline import pictures
+    from hdrlab.show.pages import wording
 
     comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
-    unit = assembly.bracket.luminance_of_unit
-    max_unit = assembly.bracket.max_luminance_of_unit
     # the map is written while the image is made, and also if making the image fails
     with ThreadPoolExecutor(1) as executor:
         writing = executor.submit(
             radiance.write_radiance,
-            out,
+            outputs.radiance_map,
             assembly.E,
             comments=comments,
-            luminance_of_unit=unit,
-            max_luminance_of_unit=max_unit,
+            luminance_of_unit=assembly.bracket.luminance_of_unit,
+            max_luminance_of_unit=assembly.bracket.max_luminance_of_unit,
         )
-        description = executor.submit(wording.describe_map, assembly.E)
-        developed = pictures.develop_assembly(assembly, operator) if picture or report else None
-        if uncertainty and assembly.s is not None:
-            both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
-            unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
-            layers.write_layers(uncertainty, both, comments=[*unit_comments, *comments])
-        if why:
-            evidence_file.write_evidence(evidence, assembly)
-        if developed and picture:
-            photo_files.write_picture(picture, developed.picture, is_result=True)
-            remarks.detail(f"{picture}: {developed.settings}")
-        if developed and report:
+        map_description = executor.submit(wording.describe_map, assembly.E)
+        developed = None
+        if outputs.has_picture:
+            developed = pictures.develop_assembly(assembly, operator)
+        if outputs.uncertainty:
+            _write_uncertainty(outputs.uncertainty, assembly, comments)
+        if outputs.evidence:
+            from hdrlab.pipeline import evidence_file
+
+            evidence_file.write_evidence(outputs.evidence, assembly)
+        if developed and outputs.picture:
+            photo_files.write_picture(outputs.picture, developed.picture, is_result=True)
+            remarks.detail(f"{outputs.picture}: {developed.settings}")
+        if developed and outputs.report:
             from hdrlab.show.pages.report import write_report
 
-            recipe = {
-                "response": response,
-                "align": align,
-                "weight": weight,
-                "ghosts": ghosts,
-                "flare": flare,
-                "merge": merge,
-                "times": times_mode,
-                "tonemap": developed.settings,
-            }
-            write_report(report, assembly, developed.picture, recipe=recipe)
+            full_recipe = {**recipe, "tonemap": developed.settings}
+            write_report(outputs.report, assembly, developed.picture, recipe=full_recipe)
         writing.result()
-    outputs = [f"{out} ({description.result()})"]
-    if picture:
-        outputs.append(wording.describe_picture(str(picture), assembly, operator))
-    if uncertainty:
-        outputs.append(_describe_uncertainty(uncertainty, assembly))
-    if why:
-        outputs.append(_describe_evidence(evidence))
-    if report:
-        outputs.append(str(report / "report.html"))
-    click.echo(wording.summarize_assembly(assembly, outputs))
-    if strict and assembly.doubts:
-        ctx.exit(EXIT_DOUBTFUL_MAP)
+    descriptions = [f"{outputs.radiance_map} ({map_description.result()})"]
+    if outputs.picture:
+        descriptions.append(wording.describe_picture(str(outputs.picture), assembly, operator))
+    if outputs.uncertainty:
+        descriptions.append(_describe_uncertainty(outputs.uncertainty, assembly))
+    if outputs.evidence:
+        descriptions.append(_describe_evidence(outputs.evidence))
+    if outputs.report:
+        descriptions.append(str(outputs.report / "report.html"))
+    return descriptions
+
+
+def _write_uncertainty(path: Path, assembly: "Assembly", comments: list[str]) -> None:
+    """Write the map and its standard deviation as layers; do nothing if there is no deviation."""
+    from hdrlab.io import radiance
+    from hdrlab.io.maps import layers
+
+    if assembly.s is None:
+        return
+    unit = assembly.bracket.luminance_of_unit
+    unit_comments = [] if unit is None else [radiance.describe_unit(unit)]
+    both = dict(zip(layers.UNCERTAINTY_LAYERS, (assembly.E, assembly.s), strict=True))
+    layers.write_layers(path, both, comments=[*unit_comments, *comments])
 
 
 class _MeasuredNoise:
@@ -338,7 +418,8 @@ class _MeasuredNoise:
 
         for warning in self.camera.warnings:
             remarks.note(f"{self.path}: {warning.text}")
-        shortest = next(one.path for one in self.headers if one.path.name == bracket.names[0])
+        paths = [header.path for header in self.headers]
+        shortest = next(path for path in paths if path.name == bracket.names[0])
         return camera_noise.noise_of_developed(self.camera, shortest)
 
 
