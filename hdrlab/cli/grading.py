@@ -2,12 +2,17 @@
 
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from hdrlab.cli import assignments, classroom, common
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.errors import InputError
+
+if TYPE_CHECKING:
+    from hdrlab.course.grading.results import Result
+    from hdrlab.course.plan import GradingOptions
 
 jobs_option = click.option(
     "--jobs",
@@ -197,86 +202,116 @@ def grade(
     no page or table with names. To put the names back, run it again without --anonymous.
     """
     from hdrlab.course import plan as plans
-    from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
-    if student and secret_file is None:
-        raise InputError(
-            "--student needs --secret-file, because without a secret anybody can compute the inputs"
-        )
-    if submission.is_dir() and student:
-        raise InputError(
-            f"--student is for a single submission, but {submission} is a folder; "
-            "leave --student out: the roster has the names"
-        )
-    if anonymous and secret_file is None:
-        raise InputError(
-            "--anonymous needs --secret-file, because without a secret anybody with the roster can "
-            "compute the codes"
-        )
-    class_options = {
-        "--roster": roster,
-        "--received": received,
-        "--file-times": file_times,
-        "--before": before,
-        "--moodle": moodle,
-        "--adjustments": adjustments,
-        "--explain-hidden": explain_hidden,
-        "--anonymous": anonymous,
-        "--only": only,
-        "--since": since,
-        "--regrade": regrade,
-        "--jobs": jobs,
-        "--cluster": cluster,
-    }
-    given = [name for name, value in class_options.items() if value]
-    if submission.is_file() and given:
-        raise InputError(
-            f"{', '.join(given)}: for a folder of submissions, but {submission} is a file; "
-            "pass the folder, or leave these options out"
-        )
+    options = classroom.ClassOptions(
+        submissions=submission,
+        homework=homework,
+        tier=tier,
+        hidden=hidden,
+        student=student,
+        secret_file=secret_file,
+        timeout=timeout,
+        roster=roster,
+        received=received,
+        file_times=file_times,
+        before=before,
+        moodle=moodle,
+        adjustments=adjustments,
+        explain_hidden=explain_hidden,
+        plan=plan,
+    )
+    run_options = classroom.RunOptions(
+        out=out,
+        only=only,
+        since=since,
+        regrade=regrade,
+        jobs=jobs,
+        cluster=cluster,
+        anonymous=anonymous,
+    )
+    _check_grading_options(options, run_options)
     secret, note = assignments.read_secret(secret_file)
     conditions = plans.GradingOptions(
         tier=tier, student=student, secret=secret, hidden=hidden, timeout=timeout
     )
     if submission.is_dir():
-        options = classroom.ClassOptions(
-            submissions=submission,
-            homework=homework,
-            tier=tier,
-            hidden=hidden,
-            student=student,
-            secret_file=secret_file,
-            timeout=timeout,
-            roster=roster,
-            received=received,
-            file_times=file_times,
-            before=before,
-            moodle=moodle,
-            adjustments=adjustments,
-            explain_hidden=explain_hidden,
-            plan=plan,
-        )
-        run_options = classroom.RunOptions(
-            out=out,
-            only=only,
-            since=since,
-            regrade=regrade,
-            jobs=jobs,
-            cluster=cluster,
-            anonymous=anonymous,
-        )
         with temporary_folder():
             classroom.grade_class(classroom.load_class(conditions, options, run_options))
         assignments.echo_secret_note(note)
         return
-    assignment = assignments.find_homework(submission, homework, plan)
-    result = assignments.grade_submission(submission, assignment, conditions)
+    result = _grade_file(options, conditions)
+    if secret:
+        assignments.echo_secret_note(note)
+    _write_results(out, result)
+
+
+def _check_grading_options(
+    options: classroom.ClassOptions, run_options: classroom.RunOptions
+) -> None:
+    """Raise an InputError if the options contradict each other or need another option."""
+    submission = options.submissions
+    if options.student and options.secret_file is None:
+        raise InputError(
+            "--student needs --secret-file, because without a secret anybody can compute the inputs"
+        )
+    if submission.is_dir() and options.student:
+        raise InputError(
+            f"--student is for a single submission, but {submission} is a folder; "
+            "leave --student out: the roster has the names"
+        )
+    if run_options.anonymous and options.secret_file is None:
+        raise InputError(
+            "--anonymous needs --secret-file, because without a secret anybody with the roster can "
+            "compute the codes"
+        )
+    if submission.is_file():
+        _require_no_class_options(options, run_options)
+
+
+def _require_no_class_options(
+    options: classroom.ClassOptions, run_options: classroom.RunOptions
+) -> None:
+    """Raise an InputError that names the options that apply only to a folder of submissions."""
+    class_options = {
+        "--roster": options.roster,
+        "--received": options.received,
+        "--file-times": options.file_times,
+        "--before": options.before,
+        "--moodle": options.moodle,
+        "--adjustments": options.adjustments,
+        "--explain-hidden": options.explain_hidden,
+        "--anonymous": run_options.anonymous,
+        "--only": run_options.only,
+        "--since": run_options.since,
+        "--regrade": run_options.regrade,
+        "--jobs": run_options.jobs,
+        "--cluster": run_options.cluster,
+    }
+    names = [name for name, value in class_options.items() if value]
+    if names:
+        raise InputError(
+            f"{', '.join(names)}: for a folder of submissions, but {options.submissions} is a file; "
+            "pass the folder, or leave these options out"
+        )
+
+
+def _grade_file(options: classroom.ClassOptions, conditions: "GradingOptions") -> "Result":
+    """Grade a single submission, and print its feedback."""
+    from hdrlab.course.reports import feedback
+
+    assignment = assignments.find_homework(options.submissions, options.homework, options.plan)
+    result = assignments.grade_submission(options.submissions, assignment, conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         common.echo_notes([f"for practice. {result.why_practice}"])
-    if secret:
-        assignments.echo_secret_note(note)
+    return result
+
+
+def _write_results(out: Path, result: "Result") -> None:
+    """Write all result files of a single submission, and print the path of the feedback page."""
+    from hdrlab.course.reports import gradebook
+
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 
