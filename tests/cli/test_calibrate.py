@@ -38,22 +38,22 @@ def photographs(tmp_path_factory):
 def test_calibrate_writes_the_curve_in_every_format(suffix, photographs, tmp_path, capsys):
     folder, times, true = photographs
     out = tmp_path / f"g{suffix}"
-    code, said, _ = hdrlab("calibrate", folder, "-o", out, "--times", times, capsys=capsys)
-    assert code == 0 and str(out) in said
+    code, output, _ = hdrlab("calibrate", folder, "-o", out, "--times", times, capsys=capsys)
+    assert code == 0 and str(out) in output
     assert response_rmse(read_curve(out), true).max() < 1.5
 
 
 def test_summary_lists_doublings_of_exposure_and_residuals(photographs, tmp_path, capsys):
     folder, times, true = photographs
     outs = [tmp_path / "g.csv", tmp_path / "g.m"]
-    code, said, _ = hdrlab(
+    code, output, _ = hdrlab(
         *("calibrate", folder, "--times", times, "--response", "space"),
         *("-o", outs[0], "-o", outs[1]),
         capsys=capsys,
     )
-    assert code == 0 and said.startswith("space, from 4 photos\nstops ")
-    assert all(line == line.rstrip() for line in said.splitlines())
-    lines = {line.split()[0]: line.split()[1:] for line in said.splitlines()}
+    assert code == 0 and output.startswith("space, from 4 photos\nstops ")
+    assert all(line == line.rstrip() for line in output.splitlines())
+    lines = {line.split()[0]: line.split()[1:] for line in output.splitlines()}
     levels = dict(zip(lines["stops"], map(int, lines["green"]), strict=True))
     true_levels = calibration.doublings(true)
     assert levels["0"] == 128
@@ -97,8 +97,9 @@ def test_saved_curve_can_replace_the_response_method(photographs, tmp_path):
     assert hdrlab(*options, "-o", tmp_path / "b.pfm", "--response", saved) == 0
     assert hdrlab(*options, "-o", tmp_path / "c.pfm", "--response", tmp_path / "true.m") == 0
     assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
-    found, best = (radiance.read_radiance(tmp_path / name) for name in ("b.pfm", "c.pfm"))
-    assert np.median(np.abs(np.log2(found / best))) < 0.1
+    with_saved_curve = radiance.read_radiance(tmp_path / "b.pfm")
+    best = radiance.read_radiance(tmp_path / "c.pfm")
+    assert np.median(np.abs(np.log2(with_saved_curve / best))) < 0.1
 
 
 @pytest.mark.parametrize(
@@ -116,8 +117,8 @@ def test_bad_input_is_a_one_line_error_and_writes_nothing(
     arguments, expected, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    code, said, complaint = hdrlab(*arguments, capsys=capsys)
-    assert (code, said) == (2, "") and complaint.count("\n") == 1 and expected in complaint
+    code, output, complaint = hdrlab(*arguments, capsys=capsys)
+    assert (code, output) == (2, "") and complaint.count("\n") == 1 and expected in complaint
     assert list(tmp_path.iterdir()) == []
 
 

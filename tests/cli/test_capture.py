@@ -15,16 +15,16 @@ from hdrlab.io import photos, radiance
 
 
 def run(command, *arguments):
-    result = CliRunner().invoke(command, [str(one) for one in arguments])
+    result = CliRunner().invoke(command, [str(argument) for argument in arguments])
     if result.exception and not isinstance(result.exception, SystemExit):
         raise result.exception
     return result.output
 
 
 def test_plan_states_the_number_of_photos_and_their_times():
-    said = run(capture.plan, 0.01, 30000)
-    assert "21.5 stops" in said and "5 photos, 4 stops apart, f/8, ISO 100" in said
-    assert [line.split()[0] for line in said.splitlines()[2:]] == [
+    output = run(capture.plan, 0.01, 30000)
+    assert "21.5 stops" in output and "5 photos, 4 stops apart, f/8, ISO 100" in output
+    assert [line.split()[0] for line in output.splitlines()[2:]] == [
         "1/500",
         "1/30",
         "1/2",
@@ -37,8 +37,8 @@ def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
     radiance.write_radiance(
         tmp_path / "a.pfm", np.geomspace(0.01, 30000, 5000, dtype=np.float32).reshape(50, 100)
     )
-    said = run(capture.plan, "--map", tmp_path / "a.pfm")
-    assert "21.5 stops" in said and "5 photos" in said
+    output = run(capture.plan, "--map", tmp_path / "a.pfm")
+    assert "21.5 stops" in output and "5 photos" in output
 
 
 @pytest.mark.parametrize(
@@ -75,24 +75,22 @@ def test_plan_rejects_an_option_that_the_camera_file_also_sets(option, line, tmp
 def test_plan_by_noise_is_listed_after_the_plan_by_stops_and_is_faster(tmp_path):
     (tmp_path / "model.toml").write_text("read_noise = 3\nspeeds = [100, 800]\nconverter_noise = 3")
     scene = ("--low", 0.5, "--high", 500, "--snr", 8)
-    said = run(capture.plan, *scene, "--camera", tmp_path / "model.toml")
-    stops, noise = (
-        re.search(rf"by {way}: .* in ([\d.]+) s .* ([\d.]+)$", said, re.M)
-        for way in ("stops", "noise")
-    )
+    output = run(capture.plan, *scene, "--camera", tmp_path / "model.toml")
+    stops = re.search(r"by stops: .* in ([\d.]+) s .* ([\d.]+)$", output, re.M)
+    noise = re.search(r"by noise: .* in ([\d.]+) s .* ([\d.]+)$", output, re.M)
     assert float(noise[1]) < float(stops[1]) and float(noise[2]) >= 8
-    assert "at ISO 800" in said and "2 photos, 4 stops apart" in said
+    assert "at ISO 800" in output and "2 photos, 4 stops apart" in output
     assert "at ISO 800" not in run(capture.plan, *scene) and "noise" not in run(
         capture.plan, 0.5, 500
     )
 
 
 @pytest.mark.parametrize(
-    "said",
+    "text",
     ["speeds = []", "speeds = 100", "read_noise = 'low'", "noise = 3", "gain = ", "gain = 0"],
 )
-def test_plan_rejects_invalid_camera_files(tmp_path, said):
-    (tmp_path / "model.toml").write_text(said)
+def test_plan_rejects_invalid_camera_files(tmp_path, text):
+    (tmp_path / "model.toml").write_text(text)
     with pytest.raises(InputError):
         run(capture.plan, 0.5, 500, "--snr", 20, "--camera", tmp_path / "model.toml")
 
@@ -100,8 +98,8 @@ def test_plan_rejects_invalid_camera_files(tmp_path, said):
 @pytest.mark.parametrize("mode", capture.METERING_MODES)
 def test_meter_reports_reading_and_stops_in_every_mode(tmp_path, mode):
     photos.write_picture(tmp_path / "gray.png", to_8bit(np.full((40, 60, 3), 0.09, np.float32)))
-    said = run(capture.meter, tmp_path / "gray.png", "--mode", mode)
-    assert "reading 0.09" in said and "1.0 stops too dark" in said
+    output = run(capture.meter, tmp_path / "gray.png", "--mode", mode)
+    assert "reading 0.09" in output and "1.0 stops too dark" in output
 
 
 def test_meter_offers_every_mode_of_the_library():
@@ -114,10 +112,8 @@ def test_meter_reads_the_spot_at_the_given_place(tmp_path):
     E = np.full((40, 60), 0.09, np.float32)
     E[:, 30:] = 0.72
     photos.write_picture(tmp_path / "two.png", to_8bit(E))
-    left, right = (
-        run(capture.meter, tmp_path / "two.png", "--mode", "spot", "--at", f"0.5,{x}")
-        for x in (0.2, 0.8)
-    )
+    left = run(capture.meter, tmp_path / "two.png", "--mode", "spot", "--at", "0.5,0.2")
+    right = run(capture.meter, tmp_path / "two.png", "--mode", "spot", "--at", "0.5,0.8")
     assert "1.0 stops too dark" in left and "2.0 stops too bright" in right
 
 
@@ -139,8 +135,8 @@ def test_meter_rejects_invalid_places(tmp_path):
 
 def test_correct_reports_its_region_and_correction(tmp_path):
     photos.write_picture(tmp_path / "dark.png", data.astronaut() // 3)
-    said = run(capture.correct, tmp_path / "dark.png", "-o", tmp_path / "light.png")
-    assert "important region: skin" in said and "stops: mean pixel value 12" in said
+    output = run(capture.correct, tmp_path / "dark.png", "-o", tmp_path / "light.png")
+    assert "important region: skin" in output and "stops: mean pixel value 12" in output
     assert (
         photos.read_photo(tmp_path / "light.png").mean()
         > 2 * photos.read_photo(tmp_path / "dark.png").mean()

@@ -55,8 +55,8 @@ def test_grade_writes_every_form_into_one_folder(typed, tmp_path):
     code, out, err = typed(
         "grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results"
     )
-    found = {file.name for file in (tmp_path / "results").iterdir()}
-    assert code == 0 and found == {
+    names = {file.name for file in (tmp_path / "results").iterdir()}
+    assert code == 0 and names == {
         "result.json",
         "gradescope.json",
         "junit.xml",
@@ -90,9 +90,9 @@ def test_a_practice_score_is_announced_once(typed, secret):
 def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
     common = ("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
     seeds = []
-    for said in (True, False):
+    for is_first in (True, False):
         code, _, err = typed(*common, "--student", "ada", "--secret-file", "new.txt")
-        assert code == 0 and ("new.txt: created a secret" in err) is said
+        assert code == 0 and ("new.txt: created a secret" in err) is is_first
         seeds.append(json.loads((tmp_path / "results" / "result.json").read_text())["seed"])
     secret = tmp_path / "new.txt"
     assert seeds[0] == seeds[1] != "" and len(secret.read_text().strip()) > 30
@@ -105,7 +105,7 @@ def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
 
 @pytest.mark.quick
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (("check", "missing.ipynb", "--homework", "hw2"), "missing.ipynb"),
         (("check", "hw2.py", "--task", "nothing"), "--task, one of hat"),
@@ -115,9 +115,9 @@ def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
         (("course", "export"), "--nbgrader DIR or --gradescope DIR"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(typed, arguments, said):
+def test_bad_input_is_one_line_and_exit_code_2(typed, arguments, message):
     code, _, err = typed(*arguments, *(() if arguments[0] == "course" else ("--plan", "plan.toml")))
-    assert code == 2 and said in err and "Traceback" not in err
+    assert code == 2 and message in err and "Traceback" not in err
 
 
 @pytest.mark.quick

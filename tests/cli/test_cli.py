@@ -24,9 +24,9 @@ from hdrlab.show.pages.wording import describe_agreement, describe_map
 
 
 def hdrlab(*arguments, capsys=None):
-    """Run the command in this process; return its exit code, and what it said where `capsys` listens."""
+    """Run the command in this process; return its exit code, and its output if `capsys` is passed."""
     with pytest.raises(SystemExit) as stop:
-        cli.run([str(one) for one in arguments])
+        cli.run([str(argument) for argument in arguments])
     code = stop.value.code or 0
     return (code, *capsys.readouterr()) if capsys else code
 
@@ -56,10 +56,10 @@ def map_file(tmp_path):
 
 
 def test_python_m_hdrlab_is_the_same_command():
-    said = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-m", "hdrlab", "--version"], capture_output=True, text=True, check=True
     )
-    assert said.stdout.startswith("hdrlab, version ")
+    assert process.stdout.startswith("hdrlab, version ")
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["assemble", "--help"], ["demo", "-h"]])
@@ -123,8 +123,10 @@ def test_range_of_a_large_map_is_measured_on_a_sample():
 
 def test_assemble_writes_map_picture_and_report_from_a_folder(photographs, tmp_path, capsys):
     folder, times = photographs
-    out, picture, report = tmp_path / "room.hdr", tmp_path / "room.png", tmp_path / "report"
-    code, said, _ = hdrlab(
+    out = tmp_path / "room.hdr"
+    picture = tmp_path / "room.png"
+    report = tmp_path / "report"
+    code, output, _ = hdrlab(
         "assemble",
         folder,
         "-o",
@@ -137,7 +139,7 @@ def test_assemble_writes_map_picture_and_report_from_a_folder(photographs, tmp_p
         report,
         capsys=capsys,
     )
-    assert code == 0 and str(out) in said
+    assert code == 0 and str(out) in output
     E = radiance.read_radiance(out)
     assert read_photo(picture).shape == E.shape
     assert "<html" in (report / "report.html").read_text(encoding="utf8")
@@ -151,7 +153,9 @@ def test_map_is_complete_although_its_picture_fails_or_is_interrupted(
         raise error
 
     folder, times = photographs
-    plain, out, picture = (tmp_path / name for name in ("plain.hdr", "room.hdr", "room.png"))
+    plain = tmp_path / "plain.hdr"
+    out = tmp_path / "room.hdr"
+    picture = tmp_path / "room.png"
     assert hdrlab("assemble", folder, "-o", plain, "--times", times) == 0
     monkeypatch.setattr(pictures, "develop_and_describe", fail)
     assert hdrlab("assemble", folder, "-o", out, "--times", times, "--picture", picture) == code
@@ -203,14 +207,15 @@ def test_assemble_prints_one_line_if_nothing_is_wrong_and_details_only_on_reques
 ):
     folder, times = photographs
     (folder / "times.csv").write_text(times.read_text())
-    out, picture = tmp_path / "x.hdr", tmp_path / "x.png"
+    out = tmp_path / "x.hdr"
+    picture = tmp_path / "x.png"
     arguments = ["assemble", folder, "-o", out, "--picture", picture, "--report", tmp_path / "page"]
-    code, said, remarks = hdrlab(*arguments, capsys=capsys)
+    code, output, remarks = hdrlab(*arguments, capsys=capsys)
     assert code == 0 and remarks == ""
-    assert said.startswith("OK") and said.count("\n") == 1
-    assert str(out) in said and str(picture) in said and "report.html" in said
+    assert output.startswith("OK") and output.count("\n") == 1
+    assert str(out) in output and str(picture) in output and "report.html" in output
     _, verbose_said, remarks = hdrlab(*arguments, "--verbose", capsys=capsys)
-    assert verbose_said == said
+    assert verbose_said == output
     assert "times.csv" in remarks and "share" in remarks
     page = (tmp_path / "page/report.html").read_text(encoding="utf8")
     assert "times.csv" in page
@@ -223,9 +228,9 @@ def test_assemble_does_not_print_ok_if_there_are_warnings(photographs, tmp_path,
     name, seconds = rows[-2].rsplit(",", 1)
     wrong.write_text("\n".join([*rows[:-2], f"{name},{4 * float(seconds)}", rows[-1]]))
     arguments = ["assemble", folder, "--times", wrong, "--keep-times", "-o", tmp_path / "x.hdr"]
-    code, said, remarks = hdrlab(*arguments, capsys=capsys)
+    code, output, remarks = hdrlab(*arguments, capsys=capsys)
     assert code == 0 and "warning: " in remarks
-    assert not said.startswith("OK") and "warning" in said and "x.hdr" in said
+    assert not output.startswith("OK") and "warning" in output and "x.hdr" in output
 
 
 @pytest.mark.papers
@@ -237,10 +242,11 @@ def test_doubtful_map_is_written_with_warnings_and_fails_only_with_strict(
         "frame1.png,0.04", "frame1.png,0.02"
     )  # of one, the others left it out
     times.write_text(text.replace("frame2.png,0.16", "frame2.png,0.3"))
-    page, common = tmp_path / "page", ["assemble", folder, "--times", times, "--keep-times", "-o"]
+    page = tmp_path / "page"
+    common = ["assemble", folder, "--times", times, "--keep-times", "-o"]
     for out in (tmp_path / "x.hdr", tmp_path / "x.exr", tmp_path / "x.pfm"):
-        code, _, said = hdrlab(*common, out, "--report", page, capsys=capsys)
-        warnings = [line for line in said.splitlines() if line.startswith("warning: ")]
+        code, _, errors = hdrlab(*common, out, "--report", page, capsys=capsys)
+        warnings = [line for line in errors.splitlines() if line.startswith("warning: ")]
         assert code == 0 and 1 <= len(warnings) <= 3
         about_times = [line for line in warnings if "exposure times" in line]
         assert any("frame2.png" in line for line in about_times)
@@ -257,13 +263,15 @@ def test_uncertainty_writes_the_map_and_its_standard_deviation_as_layers(
     photographs, tmp_path, capsys
 ):
     folder, times = photographs
-    out, both, page = tmp_path / "x.pfm", tmp_path / "sure.exr", tmp_path / "page"
-    code, said, _ = hdrlab(
+    out = tmp_path / "x.pfm"
+    both = tmp_path / "sure.exr"
+    page = tmp_path / "page"
+    code, output, _ = hdrlab(
         *("assemble", folder, "--times", times, "-o", out, "--uncertainty", both, "--report", page),
         capsys=capsys,
     )
-    match = re.search(r"half of the pixels .* ± 0\.0\d+ stops, 95 % to ± 0\.\d+", said)
-    assert code == 0 and str(both) in said and match
+    match = re.search(r"half of the pixels .* ± 0\.0\d+ stops, 95 % to ± 0\.\d+", output)
+    assert code == 0 and str(both) in output and match
     words = match[0]
     E, s = read_layers(both).values()
     assert np.array_equal(E, radiance.read_radiance(both)) and E.shape == s.shape
@@ -277,7 +285,7 @@ def test_uncertainty_writes_the_map_and_its_standard_deviation_as_layers(
 
 def test_uncertainty_rejects_other_formats_than_exr_before_the_work(photographs, tmp_path, capsys):
     folder, times = photographs
-    code, _, said = hdrlab(
+    code, _, errors = hdrlab(
         *(
             "assemble",
             folder,
@@ -291,35 +299,39 @@ def test_uncertainty_rejects_other_formats_than_exr_before_the_work(photographs,
         capsys=capsys,
     )
     assert (
-        code == 2 and said.count("\n") == 1 and ".exr" in said and not (tmp_path / "x.pfm").exists()
+        code == 2
+        and errors.count("\n") == 1
+        and ".exr" in errors
+        and not (tmp_path / "x.pfm").exists()
     )
 
 
 def test_map_without_doubts_has_none_in_its_header_and_passes_strict(photographs, tmp_path, capsys):
     folder, times = photographs
-    code, _, said = hdrlab(
+    code, _, errors = hdrlab(
         "assemble", folder, "-o", tmp_path / "x.hdr", "--times", times, "--strict", capsys=capsys
     )
-    assert code == 0 and "warning" not in said
+    assert code == 0 and "warning" not in errors
     assert b"doubt" not in (tmp_path / "x.hdr").read_bytes()[:500]
 
 
 @pytest.mark.papers
 def test_unknown_times_can_be_steps_or_estimated_from_the_pixels(photographs, tmp_path, capsys):
     folder, _ = photographs
-    steps, pixels = tmp_path / "steps.pfm", tmp_path / "pixels.pfm"
-    code, _, said = hdrlab("assemble", folder, "-o", steps, "--stops", 2, capsys=capsys)
-    assert code == 0 and "warning" not in said
-    code, _, said = hdrlab("assemble", folder, "-o", pixels, "--times", "estimate", capsys=capsys)
-    assert code == 0 and "relative exposure times" in said and "--stops" in said
+    steps = tmp_path / "steps.pfm"
+    pixels = tmp_path / "pixels.pfm"
+    code, _, errors = hdrlab("assemble", folder, "-o", steps, "--stops", 2, capsys=capsys)
+    assert code == 0 and "warning" not in errors
+    code, _, errors = hdrlab("assemble", folder, "-o", pixels, "--times", "estimate", capsys=capsys)
+    assert code == 0 and "relative exposure times" in errors and "--stops" in errors
 
 
 def test_list_of_times_in_the_folder_is_used(photographs, tmp_path, capsys):
     folder, times = photographs
     (folder / "readme.txt").write_text("Photographs of a room")
     (folder / "times.txt").write_text(times.read_text())
-    code, _, said = hdrlab("assemble", folder, "-v", "-o", tmp_path / "x.pfm", capsys=capsys)
-    assert code == 0 and "times.txt" in said
+    code, _, errors = hdrlab("assemble", folder, "-v", "-o", tmp_path / "x.pfm", capsys=capsys)
+    assert code == 0 and "times.txt" in errors
 
 
 def test_folders_named_like_files_beside_the_photos_are_skipped(photographs, tmp_path, capsys):
@@ -346,10 +358,10 @@ def test_pixels_decide_whether_numbers_in_a_list_are_seconds_or_1_over_seconds(
     wrong = power < 0 and " s" in form
     out = tmp_path / "x.pfm"
     list_options = ["--times", tmp_path / "list.txt"]
-    code, _, said = hdrlab("assemble", folder, "-o", out, *list_options, capsys=capsys)
+    code, _, errors = hdrlab("assemble", folder, "-o", out, *list_options, capsys=capsys)
     assert code == 0
     if wrong:
-        assert "darker photo" in said and "relative" in said
+        assert "darker photo" in errors and "relative" in errors
     else:
         assert hdrlab("assemble", folder, "-o", tmp_path / "y.pfm", "--times", times) == 0
         assert np.allclose(
@@ -365,11 +377,11 @@ def test_times_in_the_wrong_order_are_estimated_and_to_keep_them_is_an_error(
     times.write_text(text)
     out = tmp_path / "x.hdr"
     options = ["assemble", folder, "-o", out, "--times", times]
-    code, _, said = hdrlab(*options, "--keep-times", capsys=capsys)
-    assert code == 2 and "longer exposure is the darker" in said and "--times estimate" in said
+    code, _, errors = hdrlab(*options, "--keep-times", capsys=capsys)
+    assert code == 2 and "longer exposure is the darker" in errors and "--times estimate" in errors
     assert not out.exists()
-    code, _, said = hdrlab(*options, capsys=capsys)
-    assert code == 0 and "longer exposure is the darker" in said and "estimated" in said
+    code, _, errors = hdrlab(*options, capsys=capsys)
+    assert code == 0 and "longer exposure is the darker" in errors and "estimated" in errors
     assert hdrlab("assemble", folder, "-o", out, "--times", "estimate") == 0
 
 
@@ -392,14 +404,15 @@ def test_bad_input_is_a_one_line_error_with_exit_code_2(
     arguments, expected, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    code, said, complaint = hdrlab(*arguments, capsys=capsys)
-    assert code == 2 and said == ""
+    code, output, complaint = hdrlab(*arguments, capsys=capsys)
+    assert code == 2 and output == ""
     assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1 and expected in complaint
     assert list(tmp_path.iterdir()) == []
 
 
 def test_set_changes_an_operators_settings_by_name(map_file, tmp_path):
-    dark, bright = tmp_path / "dark.png", tmp_path / "bright.png"
+    dark = tmp_path / "dark.png"
+    bright = tmp_path / "bright.png"
     assert hdrlab("tonemap", map_file, "-o", dark, "--set", "key=0.09") == 0
     assert hdrlab("tonemap", map_file, "-o", bright, "--set", "key=0.72") == 0
     assert read_photo(dark).mean() < read_photo(bright).mean() - 10
@@ -424,16 +437,20 @@ def test_convert_is_lossless_between_float_formats(suffix, map_file, tmp_path):
 
 
 def write_pfm(file, pixels):
-    """Write a .pfm file of any values, (H, W, 3): `write_radiance` takes radiance alone."""
+    """Write a .pfm file with any values (H, W, 3); `write_radiance` accepts only radiance."""
     file.write_bytes(
         b"PF\n%d %d\n-1.0\n" % (pixels.shape[1], pixels.shape[0]) + pixels.astype("<f4").tobytes()
     )
 
 
 def test_invalid_values_of_a_map_are_repaired_with_a_note(tmp_path, capsys):
-    file, out = tmp_path / "x.pfm", tmp_path / "x.png"
+    file = tmp_path / "x.pfm"
+    out = tmp_path / "x.png"
     pixels = np.ones((4, 5, 3))
-    pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
+    pixels[0, 0, 0] = np.nan
+    pixels[1, 1, 1] = np.inf
+    pixels[2, 2, 2] = -0.1
+    pixels[3, 3] = -1
     write_pfm(file, pixels)
     counts = ("1 unknown", "1 infinite", "1 pixels with a negative channel", "1 pixels below black")
     for command in (["tonemap", file, "-o", out], ["convert", file, "-o", tmp_path / "y.exr"]):
@@ -450,7 +467,8 @@ def test_invalid_values_of_a_map_are_repaired_with_a_note(tmp_path, capsys):
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
 def test_mostly_invalid_map_is_rejected_without_clean(value, tmp_path, capsys):
-    file, out = tmp_path / "x.pfm", tmp_path / "out.pfm"
+    file = tmp_path / "x.pfm"
+    out = tmp_path / "out.pfm"
     pixels = np.ones((4, 5, 3))
     pixels[:2] = value
     write_pfm(file, pixels)
@@ -490,26 +508,26 @@ def test_info_states_range_size_and_unit_of_a_map_and_whether_a_photo_states_its
     radiance.write_radiance(tmp_path / "relative.pfm", E)
     photo = min(path for path in photographs[0].iterdir() if path.suffix == ".png")
     files = [tmp_path / "known.hdr", tmp_path / "relative.pfm", photo]
-    code, said, _ = hdrlab("info", *files, capsys=capsys)
-    assert code == 0 and said.count("10.0 stops") == 2 and "2.5 cd/m^2" in said
-    assert "relative\n" in said and "exposure     the file states none" in said
+    code, output, _ = hdrlab("info", *files, capsys=capsys)
+    assert code == 0 and output.count("10.0 stops") == 2 and "2.5 cd/m^2" in output
+    assert "relative\n" in output and "exposure     the file states none" in output
 
 
 def test_hdrlab_alone_prints_the_help_in_sections_with_every_command_once(capsys):
-    code, said, complaint = hdrlab(capsys=capsys)
+    code, output, complaint = hdrlab(capsys=capsys)
     assert code == 0 and complaint == ""
     for heading in ("Photographs:", "Learn:", "Teach:", "Project:"):
-        assert heading in said
+        assert heading in output
     for name in cli.main.commands:
-        assert len(re.findall(rf"^  {name} ", said, re.M)) == 1, name
+        assert len(re.findall(rf"^  {name} ", output, re.M)) == 1, name
 
 
 def test_info_states_format_and_size(map_file, photographs, capsys):
-    code, said, _ = hdrlab(
+    code, output, _ = hdrlab(
         "info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys
     )
-    assert code == 0 and "OpenEXR" in said and "PNG" in said
-    assert said.split()[said.split().index("width") + 1] == "64"
+    assert code == 0 and "OpenEXR" in output and "PNG" in output
+    assert output.split()[output.split().index("width") + 1] == "64"
 
 
 def test_failed_run_keeps_the_old_file(photographs, tmp_path):
@@ -524,8 +542,8 @@ def test_ctrl_c_is_one_line_with_exit_code_130(monkeypatch, tmp_path, capsys):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("hdrlab.io.album.select", interrupted)
-    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
-    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+    code, output, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, output, complaint.strip()) == (130, "", "hdrlab: interrupted")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -537,8 +555,8 @@ def test_ctrl_c_while_a_class_is_created_is_one_line(monkeypatch, tmp_path, caps
     monkeypatch.setattr(
         "hdrlab.io.album.select", lambda *_, **__: type("Axes", (), {"a": Stopped()})
     )
-    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
-    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+    code, output, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, output, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
 
 def test_ctrl_c_while_a_c_extension_is_loaded_is_one_line(monkeypatch, tmp_path, capsys):
@@ -546,8 +564,8 @@ def test_ctrl_c_while_a_c_extension_is_loaded_is_one_line(monkeypatch, tmp_path,
         raise ImportError("initialization failed") from KeyboardInterrupt()
 
     monkeypatch.setattr("hdrlab.io.album.select", stopped)
-    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
-    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+    code, output, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, output, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
 
 WHILE_LOADING = """
@@ -631,8 +649,8 @@ def test_lab_copies_notebooks_and_keeps_the_readers_changes(tmp_path, capsys):
     mine = [copy / "notebooks/04_response_gsolve.ipynb", copy / "assignments/hw2.ipynb"]
     for notebook in mine:
         notebook.write_text("mine")
-    code, said, _ = hdrlab("lab", "-o", copy, "--copy-only", capsys=capsys)
-    assert code == 0 and "0 new" in said
+    code, output, _ = hdrlab("lab", "-o", copy, "--copy-only", capsys=capsys)
+    assert code == 0 and "0 new" in output
     assert [notebook.read_text() for notebook in mine] == ["mine", "mine"]
 
 
@@ -652,9 +670,9 @@ def test_lab_saves_widget_state_and_disables_news(tmp_path, monkeypatch):
     monkeypatch.setenv("JUPYTER_CONFIG_PATH", str(tmp_path / "own"))
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", lambda options: None)
     assert hdrlab("lab", "-o", tmp_path / "mine") == 0
-    found = server.ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")
-    assert found["@jupyter-widgets/jupyterlab-manager:plugin"] == {"saveState": True}
-    assert found["@jupyterlab/apputils-extension:notification"]["fetchNews"] == "false"
+    settings = server.ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")
+    assert settings["@jupyter-widgets/jupyterlab-manager:plugin"] == {"saveState": True}
+    assert settings["@jupyterlab/apputils-extension:notification"]["fetchNews"] == "false"
     assert os.environ["JUPYTER_CONFIG_PATH"].endswith(os.pathsep + str(tmp_path / "own"))
 
 
@@ -665,7 +683,9 @@ def test_agreement_that_cannot_be_measured_is_not_stated_in_stops():
 
 @pytest.mark.parametrize("suffix", [".exr", ".hdr", ".tif"])
 def test_tonemap_keeps_a_night_dark_that_its_map_states(tmp_path, suffix):
-    night, day, converted = (tmp_path / f"{name}{suffix}" for name in ("night", "day", "converted"))
+    night = tmp_path / f"night{suffix}"
+    day = tmp_path / f"day{suffix}"
+    converted = tmp_path / f"converted{suffix}"
     E = scenes.room((96, 144))
     radiance.write_radiance(night, E, luminance_of_unit=1e-4)
     radiance.write_radiance(day, E)
@@ -691,10 +711,12 @@ def test_assemble_and_tonemap_make_the_same_picture_of_a_night(tmp_path, capsys,
         exif[Base.ExifOffset] = tags
         Image.fromarray(image).save(tmp_path / f"{j}.jpg", exif=exif, quality=98)
     photos = sorted(tmp_path.glob("*.jpg"))
-    out, first, second = tmp_path / "x.exr", tmp_path / "1.png", tmp_path / "2.png"
-    code, said, _ = hdrlab("assemble", *photos, "-o", out, "--picture", first, capsys=capsys)
-    assert code == 0 and "kept dark" in said
-    assert ("at most EV" in said) == (not is_complete)
+    out = tmp_path / "x.exr"
+    first = tmp_path / "1.png"
+    second = tmp_path / "2.png"
+    code, output, _ = hdrlab("assemble", *photos, "-o", out, "--picture", first, capsys=capsys)
+    assert code == 0 and "kept dark" in output
+    assert ("at most EV" in output) == (not is_complete)
     assert hdrlab("tonemap", out, "-o", second) == 0
     assert np.array_equal(read_photo(first), read_photo(second))
 
@@ -702,12 +724,10 @@ def test_assemble_and_tonemap_make_the_same_picture_of_a_night(tmp_path, capsys,
 def test_calibrate_scales_the_map_by_one_meter_reading(photographs, tmp_path, capsys):
     folder, times = photographs
     arguments = ["assemble", folder, "--times", times, "--align", "none", "-o", tmp_path / "a.exr"]
-    code, _, said = hdrlab(*arguments, "--calibrate", "20,30=50", capsys=capsys)
-    L, truth = (
-        luminance(radiance.read_radiance(tmp_path / "a.exr")),
-        luminance(scenes.room((96, 144))),
-    )
-    assert code == 0 and "50 cd/m^2 at 20,30" in said
+    code, _, errors = hdrlab(*arguments, "--calibrate", "20,30=50", capsys=capsys)
+    L = luminance(radiance.read_radiance(tmp_path / "a.exr"))
+    truth = luminance(scenes.room((96, 144)))
+    assert code == 0 and "50 cd/m^2 at 20,30" in errors
     assert np.isclose(L[29:32, 19:22].mean(), 50, rtol=1e-3)
     assert np.isclose(np.median(L / truth), 50 / truth[29:32, 19:22].mean(), rtol=0.15)
 
@@ -730,8 +750,8 @@ def test_invalid_meter_readings_are_rejected_and_nothing_is_written(
         "--calibrate",
         reading,
     ]
-    code, _, said = hdrlab(*arguments, capsys=capsys)
-    assert code == 2 and expected in said and not (tmp_path / "a.exr").exists()
+    code, _, errors = hdrlab(*arguments, capsys=capsys)
+    assert code == 2 and expected in errors and not (tmp_path / "a.exr").exists()
 
 
 @pytest.mark.parametrize(

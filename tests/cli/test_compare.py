@@ -29,8 +29,8 @@ def alt_of(sheet):
 
 def test_compare_makes_a_sheet_of_every_operator(map_file, tmp_path, capsys):
     sheet = tmp_path / "sheet.png"
-    code, said, complaint = hdrlab("compare", map_file, "-o", sheet, capsys=capsys)
-    assert code == 0 and str(sheet) in said and complaint == ""
+    code, output, complaint = hdrlab("compare", map_file, "-o", sheet, capsys=capsys)
+    assert code == 0 and str(sheet) in output and complaint == ""
     alt = alt_of(sheet)
     assert "scene.exr, 64 x 48" in alt and "decades" in alt
     operators = ["photograph", *catalogue.names("tonemap")]
@@ -52,7 +52,7 @@ def test_compare_reduces_a_large_map_to_the_given_size(map_file, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--operators", "reinhard,magic"], "magic"),
         (["--operators", "reinhard,"], "got ''"),
@@ -63,16 +63,17 @@ def test_compare_reduces_a_large_map_to_the_given_size(map_file, tmp_path):
     ],
 )
 def test_bad_input_of_compare_is_a_one_line_error(
-    options, said, map_file, tmp_path, monkeypatch, capsys
+    options, message, map_file, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
     code, out, complaint = hdrlab("compare", map_file, "-o", "sheet.png", *options, capsys=capsys)
-    assert code == 2 and out == "" and complaint.count("\n") == 1 and said in complaint
+    assert code == 2 and out == "" and complaint.count("\n") == 1 and message in complaint
     assert list(tmp_path.iterdir()) == [map_file]
 
 
 def test_compare_repairs_invalid_values_with_a_note(tmp_path, capsys):
-    broken, sheet = tmp_path / "broken.pfm", tmp_path / "sheet.png"
+    broken = tmp_path / "broken.pfm"
+    sheet = tmp_path / "sheet.png"
     pixels = np.array([[1, np.nan, 3], [np.inf, 2, 4]], "<f4")
     broken.write_bytes(b"Pf\n3 2\n-1.0\n" + pixels.tobytes())
     code, _, note = hdrlab("compare", broken, "-o", sheet, "--operators", "reinhard", capsys=capsys)
@@ -80,7 +81,7 @@ def test_compare_repairs_invalid_values_with_a_note(tmp_path, capsys):
 
 
 class Terminal(io.StringIO):
-    """What a terminal is told."""
+    """A terminal that records what is written to it."""
 
     def isatty(self):
         return True
@@ -92,14 +93,15 @@ def test_elapsed_shows_seconds_and_clears_the_line():
         deadline = time.monotonic() + 300
         while terminal.getvalue().count("\rtone mapping: ") < 2 and time.monotonic() < deadline:
             time.sleep(0.01)
-    said = terminal.getvalue()
-    lines = re.findall(r"\rtone mapping: \d+ s", said)
-    assert len(lines) >= 2 and said.startswith(lines[0] + lines[1])
-    assert said.endswith(lines[-1] + "\r" + " " * (len(lines[-1]) - 1) + "\r")
+    output = terminal.getvalue()
+    lines = re.findall(r"\rtone mapping: \d+ s", output)
+    assert len(lines) >= 2 and output.startswith(lines[0] + lines[1])
+    assert output.endswith(lines[-1] + "\r" + " " * (len(lines[-1]) - 1) + "\r")
 
 
 def test_elapsed_prints_nothing_for_short_work_or_into_a_pipe():
-    terminal, pipe = Terminal(), io.StringIO()
+    terminal = Terminal()
+    pipe = io.StringIO()
     with elapsed("tone mapping", stream=terminal):
         pass
     with elapsed("tone mapping", stream=pipe, delay=0):

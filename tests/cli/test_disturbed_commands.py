@@ -74,17 +74,17 @@ class Command:
 
 
 def size_of_image(data):
-    """Return the size of an image, whose pixels show how long something took."""
+    """Return the size of an image; its pixels may contain a duration, which differs between runs."""
     return Image.open(BytesIO(data)).size
 
 
 def without_random_words(data):
-    """Return a text without random words and times of now."""
+    """Return a text without random words and without the current date and time."""
     return TIME.sub(b"", TOKEN.sub(b"", data))
 
 
 def members_without_random_words(data):
-    """Return the members of an archive, whose settings may hold a secret or the time of packing."""
+    """Return the members of an archive without its secrets and packing times."""
     with zipfile.ZipFile(BytesIO(data)) as archive:
         members = {member: archive.read(member) for member in archive.namelist()}
     for member in [member for member in members if member.endswith(".json")]:
@@ -212,7 +212,7 @@ def commands(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A folder with what the commands read."""
+    """A folder with the input files of the commands."""
     here = tmp_path_factory.mktemp("made")
     for name in ("photos", "tmp", "out"):
         (here / name).mkdir()
@@ -258,7 +258,7 @@ def make_project(here):
 
 @contextmanager
 def small_disk(folder):
-    """Put a small disk in the place of a folder, or skip the test where nobody may."""
+    """Mount a small disk at a folder; skip the test if the user may not mount."""
     words = ["mount", "-t", "tmpfs", "-o", f"size={DISK_BYTES}", "hdrlab-test", str(folder)]
     try:
         is_mounted = subprocess.run(words, capture_output=True).returncode == 0
@@ -273,7 +273,7 @@ def small_disk(folder):
 
 
 class Place:
-    """A folder in which one command runs, and what an undisturbed run leaves there."""
+    """A folder in which one command runs, and the files that an undisturbed run leaves there."""
 
     def __init__(self, commands, made, home, command):
         self.commands = commands
@@ -296,21 +296,21 @@ class Place:
         assert self.changes > 0
 
     def reset(self):
-        """Return to the state before the command."""
+        """Restore the state from before the command."""
         for name in ("out", "tmp"):
             shutil.rmtree(self.here / name)
             shutil.copytree(self.start / name, self.here / name)
 
     def run(self, *, words=None, **how):
-        """Run the command, or another."""
+        """Run the command, or the one that is passed."""
         words = (words or self.command.words).split()
         return self.commands.run(
             interrupted_commands.CommandRun(words=words, folder=str(self.here), **how)
         )
 
     def contents(self):
-        """Return all files and folders, as far as two runs have them in common."""
-        found = {}
+        """Return all files and folders, without the parts that differ between two runs."""
+        files = {}
         for name, data in interrupted_commands.read_folder(self.here).items():
             if name.endswith(("-wal", "-shm")) or name == "out/ballast":
                 continue
@@ -319,11 +319,11 @@ class Place:
             for suffix, what_is_same in self.command.same.items():
                 if name.endswith(suffix) and "/.hdrlab-" not in name:
                     data = what_is_same(data)
-            found[name] = data
-        return found
+            files[name] = data
+        return files
 
     def dump(self, database):
-        """Return the rows of a database, from a copy: SQLite writes where it reads."""
+        """Return the rows of a copy of a database; SQLite writes to a database that it reads."""
         with TemporaryDirectory(dir=self.start) as folder:
             for path in database.parent.glob(f"{database.name}*"):
                 shutil.copyfile(path, Path(folder) / path.name)
@@ -332,31 +332,31 @@ class Place:
 
     def check_whole(self):
         """Check that each file is the one from before or from an undisturbed run."""
-        found = self.contents()
-        for name, data in found.items():
+        contents = self.contents()
+        for name, data in contents.items():
             if name.startswith("out/") and not name.endswith(GRADUAL):
                 assert data in (self.before.get(name, data), self.after.get(name, data)), name
-        return found
+        return contents
 
     def check_no_leftover(self):
-        """Check that there is nothing that an undisturbed run does not leave."""
-        found = self.check_whole()
-        assert set(found) <= set(self.before) | set(self.after)
+        """Check that the command left only files that an undisturbed run leaves."""
+        contents = self.check_whole()
+        assert set(contents) <= set(self.before) | set(self.after)
 
     def check_run_again(self):
-        """Check that the next run gives what an undisturbed one gives, and nothing else."""
+        """Check that the next run leaves exactly the files of an undisturbed run."""
         is_complete = self.check_whole().items() >= self.after.items()
         ended = self.run()
         if ended.code != 0:
             assert is_complete and self.command.refuses_twice, ended.err
-        found = self.contents()
-        assert set(found) == set(self.after)
-        assert [name for name in found if found[name] != self.after[name]] == []
+        contents = self.contents()
+        assert set(contents) == set(self.after)
+        assert [name for name in contents if contents[name] != self.after[name]] == []
 
 
 @pytest.fixture(scope="module")
 def places(commands, made, tmp_path_factory):
-    """Return the place of a command."""
+    """Return a function that makes the Place of a command."""
     known = {}
 
     def find(name):
@@ -370,14 +370,14 @@ def places(commands, made, tmp_path_factory):
 
 
 def wait_for_processes(folder):
-    """Wait for the processes that a killed command has started, which end by themselves."""
+    """Wait until the child processes of a killed command have ended."""
     until = time.monotonic() + 60
     while linux_processes.processes_using(folder / "tmp") and time.monotonic() < until:
         time.sleep(0.02)
 
 
 def change_at(place, moment):
-    """Return the number of a change of a file, of which the first is 1."""
+    """Return the number of the file change at a fraction of the run; the first has the number 1."""
     return 1 + round(moment * (place.changes - 1))
 
 

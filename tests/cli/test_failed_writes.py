@@ -35,7 +35,7 @@ def mount(folder, options):
 
 @pytest.fixture
 def disk(tmp_path, monkeypatch):
-    """A small disk of its own, in a folder with what the commands read."""
+    """A small disk, in a folder with the input files of the commands."""
     folder = tmp_path / "DISK"
     folder.mkdir()
     try:

@@ -32,8 +32,10 @@ ROOM = 3000
 # what assemble and tonemap write, and a file that stood there before
 MAIN = {"assemble": "out/room.hdr", "tonemap": "out/map.png"}
 OLD = b"precious"
-# of Linux: what lets root write where nobody may
-DROP, OVERRIDE, READ_SEARCH = 24, 1, 2
+# the option of prctl, and the capabilities that let root ignore file modes
+PR_CAPBSET_DROP = 24
+CAP_DAC_OVERRIDE = 1
+CAP_DAC_READ_SEARCH = 2
 COMMANDS = {
     "assemble": "assemble photos --stops 2 -o out/room.hdr --picture out/room.png --report out/report",
     "tonemap": "tonemap map.hdr -o out/map.png",
@@ -56,14 +58,14 @@ class Ended(NamedTuple):
 
     @property
     def clear(self):
-        """Whether an error is told in a line or two, and none by a traceback."""
+        """Return whether standard error ends with a line of hdrlab, without a traceback."""
         last = self.err.strip().splitlines()[-1:]
         return "Traceback" not in self.err and bool(last) and last[0].startswith("hdrlab: ")
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A folder with what the commands read."""
+    """A folder with the input files of the commands."""
     here = tmp_path_factory.mktemp("made")
     (here / "photos").mkdir()
     room = scenes.room((120, 180))
@@ -84,7 +86,7 @@ def made(tmp_path_factory):
 
 @pytest.fixture
 def here(made, tmp_path):
-    """A copy of it, with an empty folder `out`."""
+    """A copy of `made`, with an empty folder `out`."""
     shutil.copytree(made, tmp_path / "here")
     (tmp_path / "here/out").mkdir()
     return tmp_path / "here"
@@ -110,7 +112,7 @@ def start(command, here, prepare=None, *, cwd=None, **environment):
 
 
 def end(process):
-    """Return how it ended."""
+    """Wait for a command and return how it ended."""
     try:
         out, err = process.communicate(timeout=PATIENCE)
     finally:
@@ -125,7 +127,7 @@ def files(folder):
 
 
 def assert_nothing_is_lost(here, made):
-    """Assert that what was read is there, and nothing unfinished."""
+    """Assert that all input files are unchanged, and that no unfinished file is left."""
     for name in files(made):
         assert (here / name).read_bytes() == (made / name).read_bytes(), name
     half = [name for name in files(here) if Path(name).name.startswith((".hdrlab-", "tmp"))]
@@ -133,28 +135,28 @@ def assert_nothing_is_lost(here, made):
 
 
 def fill_disk():
-    """Let no file grow: what is written beyond is an error, as on a full disk."""
+    """Limit the size of files, so that larger writes fail as on a full disk."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM, ROOM))
 
 
 def obey_rights():
-    """Take root's right to write where it may not."""
+    """Drop root's capability to ignore file permissions."""
     if os.geteuid() == 0:
         import ctypes
 
-        for right in (OVERRIDE, READ_SEARCH):
-            ctypes.CDLL(None).prctl(DROP, right, 0, 0, 0)
+        for right in (CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH):
+            ctypes.CDLL(None).prctl(PR_CAPBSET_DROP, right, 0, 0, 0)
 
 
 def stand_nowhere(folder):
-    """Return what removes the folder in which a command is about to begin."""
+    """Return a function that removes the folder in which a command is about to start."""
     folder.mkdir()
     return lambda: folder.rmdir()
 
 
 def absolute(command, here):
-    """Return the words of a command with whole paths."""
+    """Return the words of a command with absolute paths."""
     words = COMMANDS[command].split()
     return [
         str(here / word) if (here / word).exists() or word.startswith("out/") else word
@@ -165,12 +167,14 @@ def absolute(command, here):
 @pytest.mark.parametrize("lacks", [*ENVIRONMENTS, "a clock", "a working folder"])
 @pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
 def test_a_machine_that_lacks_something_gives_the_result(command, lacks, here, made):
-    words, options = command, ENVIRONMENTS.get(lacks, {})
+    words = command
+    options = ENVIRONMENTS.get(lacks, {})
     if lacks == "a clock":
         options = {"PYTHONPATH": turn_clock_back(here)}
     if lacks == "a working folder":
         gone = here.parent / "gone"
-        words, options = absolute(command, here), {"prepare": stand_nowhere(gone), "cwd": gone}
+        words = absolute(command, here)
+        options = {"prepare": stand_nowhere(gone), "cwd": gone}
     ended = end(start(words, here, **options))
     assert ended.code == 0 and "Traceback" not in ended.err, ended.err
     assert len(files(here / "out")) == {"assemble": 3, "tonemap": 1, "grade": 5}[command]
@@ -230,20 +234,20 @@ def test_a_command_can_be_stopped_at_any_moment(command, sent, made, here):
             continue
         if "frozen runpy" in ended.err and "hdrlab" not in ended.err:
             continue
-        # before Python can hear it, or after its last line, the signal alone ends it
+        # before Python handles signals, or after its last line, the signal itself ends the process
         assert ended.code in (0, 130, -signal.SIGINT, -sent) and "Traceback" not in ended.err, (
             ended.err
         )
         if command in MAIN:
-            found = (here / MAIN[command]).read_bytes()
-            assert found == OLD or found[:4] in (b"#?RA", b"\x89PNG")
-            assert found == OLD or len(found) > ROOM
+            contents = (here / MAIN[command]).read_bytes()
+            assert contents == OLD or contents[:4] in (b"#?RA", b"\x89PNG")
+            assert contents == OLD or len(contents) > ROOM
         assert_nothing_is_lost(here, made)
 
 
 @pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
 def test_two_runs_into_one_folder_leave_a_whole_result(command, here, made):
-    assert [end(one).code for one in [start(command, here), start(command, here)]] == [0, 0]
+    assert [end(run).code for run in [start(command, here), start(command, here)]] == [0, 0]
     assert len(files(here / "out")) == {"assemble": 3, "tonemap": 1, "grade": 5}[command]
     assert_nothing_is_lost(here, made)
 
@@ -260,7 +264,9 @@ def test_a_command_works_when_its_standard_output_is_closed(command, here, made)
 
 @pytest.mark.parametrize("suffix", [b".hdr", b".exr", b".pfm"])
 def test_file_names_need_not_be_utf_8(suffix, here, made):
-    """One time is wrong, so that the names stand in a doubt, in the map's header and in the report."""
+    """One exposure time is wrong, so that file names occur in a warning, in the map's header and in the
+    report.
+    """
     names = [b"photos/caf\xe9-%c.png" % letter for letter in b"abc"]
     for name, letter, seconds in zip(names, "abc", (0.01, 0.08, 0.16), strict=True):
         tags = Image.Exif()
@@ -276,6 +282,6 @@ def test_file_names_need_not_be_utf_8(suffix, here, made):
     assert ended.code == 0 and out[4:] in os.listdir(os.fsencode(here / "out")), ended.err
     assert "warning: " in ended.err
     again = end(start([b"tonemap", out, b"-o", b"out/\xe9.png"], here))
-    # OpenEXR's module knows names of text alone, and the file is there under another one
+    # OpenEXR's module accepts only file names that are text, so the file has another name
     assert again.code == 0 if suffix != b".exr" else again.clear, again.err
     assert_nothing_is_lost(here, made)

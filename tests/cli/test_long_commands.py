@@ -35,7 +35,7 @@ def large(tmp_path_factory):
 
 
 def started(*arguments):
-    """Return the command as a process, and the terminal that it talks to."""
+    """Start the command; return the process and its terminal."""
     terminal, its_end = pty.openpty()
     command = [sys.executable, "-m", "hdrlab", *map(str, arguments)]
     process = subprocess.Popen(command, stdout=its_end, stderr=its_end, stdin=subprocess.DEVNULL)
@@ -44,15 +44,16 @@ def started(*arguments):
 
 
 def shown(terminal, until):
-    """Return what the terminal shows, up to where `until` answers True, or to the end."""
-    said, deadline = "", time.monotonic() + PATIENCE
-    while not until(said) and time.monotonic() < deadline:
+    """Return what the terminal shows until `until` returns True, or until the command ends."""
+    output = ""
+    deadline = time.monotonic() + PATIENCE
+    while not until(output) and time.monotonic() < deadline:
         if select.select([terminal], [], [], 1)[0]:
             try:
-                said += os.read(terminal, 4096).decode()
+                output += os.read(terminal, 4096).decode()
             except OSError:  # the command has ended, and closed it
                 break
-    return said
+    return output
 
 
 @pytest.mark.parametrize("command", LONG)
@@ -63,7 +64,7 @@ def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(
     out.write_bytes(b"precious")
     process, terminal = started(command, large, "-o", out, *LONG[command])
     try:
-        assert "chiu: " in shown(terminal, lambda said: " s" in said)
+        assert "chiu: " in shown(terminal, lambda output: " s" in output)
         process.send_signal(signal.SIGINT)
         ended = shown(terminal, lambda _: False)
         assert process.wait(PATIENCE) == 130

@@ -19,7 +19,7 @@ CAMERA = Sensor(full_well=20_000, read_noise=6, gain=5.5, bits=12, black=128)
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
-    """A folder with darks, flats, and the file of their noise."""
+    """A folder with dark frames, flat fields, and the file of their noise."""
     home = tmp_path_factory.mktemp("own")
     dark, flat = own_camera.write_photos(home, CAMERA, studio=STUDIO)
     assert hdrlab("noise", dark, flat, "-o", home / "noise.json") == 0
@@ -27,9 +27,9 @@ def home(tmp_path_factory):
 
 
 def test_noise_prints_a_table_with_units_and_writes_json(home, capsys):
-    code, said, errors = hdrlab("noise", home / "dark", home / "flat", capsys=capsys)
+    code, output, errors = hdrlab("noise", home / "dark", home / "flat", capsys=capsys)
     assert code == 0 and errors == ""
-    lines = said.splitlines()
+    lines = output.splitlines()
     assert lines[0] == "Simulated, ISO 100, with 95 % intervals:"
     assert lines[2].split("  ")[0] == "" and "(electrons per level)" in lines[2]
     assert [line.split()[0] for line in lines[3:]] == ["red", "green", "blue"]
@@ -80,5 +80,5 @@ def test_assemble_refuses_noise_that_is_not_that_of_the_photos(home, tmp_path, c
 
 def test_plan_reads_the_measured_noise(home, capsys):
     words = ["plan", "0.5", "10000", "--snr", "20"]
-    code, said, _ = hdrlab(*words, "--camera", home / "noise.json", capsys=capsys)
-    assert code == 0 and "by noise: " in said and "at ISO 100" in said
+    code, output, _ = hdrlab(*words, "--camera", home / "noise.json", capsys=capsys)
+    assert code == 0 and "by noise: " in output and "at ISO 100" in output

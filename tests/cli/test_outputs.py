@@ -36,7 +36,7 @@ COMMANDS = {
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """A folder of photographs and a map, to which links lead from outside."""
+    """A folder of photos and a map, with links from outside the folder."""
     (tmp_path / "photos").mkdir()
     shot = camera.shoot(scenes.room((48, 64)), [0.1, 0.4], camera.Camera(sensitivity=0.05), rng=1)
     for name, image in zip("ab", shot.images, strict=True):
@@ -63,11 +63,11 @@ def test_no_command_overwrites_its_input(name, here, capsys):
     words = name.split()[: 2 if name.startswith("course") else 1]
     with pytest.raises(SystemExit) as stop:
         cli.run([*words, *COMMANDS[name].format(here=here).split()])
-    said = capsys.readouterr().err
+    errors = capsys.readouterr().err
     assert (
         stop.value.code == 2
-        and said.count("\n") == 1
-        and ("another name" in said or "a new name" in said)
+        and errors.count("\n") == 1
+        and ("another name" in errors or "a new name" in errors)
     )
     assert contents(here) == before
 
@@ -86,7 +86,7 @@ def test_command_can_be_repeated_with_its_outputs_among_the_photos(picture, here
 
 
 def test_require_other_finds_two_names_of_one_file(tmp_path):
-    """As on Windows and macOS: there both names lead to one file, which a link shows here."""
+    """On Windows and macOS, both names are the same file; a link simulates this here."""
     (tmp_path / "IMG.JPG").write_bytes(b"original")
     os.link(tmp_path / "IMG.JPG", tmp_path / "img.jpg")
     with pytest.raises(ValueError, match="img.jpg.*IMG.JPG"):

@@ -23,46 +23,46 @@ def maps(tmp_path, monkeypatch):
     radiance.write_radiance("found.exr", FOUND)
 
 
-def told(capsys, *words):
-    code, said, complaint = hdrlab("score", *words, capsys=capsys)
+def run_score(capsys, *words):
+    code, output, complaint = hdrlab("score", *words, capsys=capsys)
     assert code == 0 and complaint == ""
-    numbers = dict(re.findall(r"^  (PSNR|log PSNR|PU-PSNR|PU-SSIM) +([\d.]+)", said, re.M))
-    return {name: float(number) for name, number in numbers.items()}, said
+    numbers = dict(re.findall(r"^  (PSNR|log PSNR|PU-PSNR|PU-SSIM) +([\d.]+)", output, re.M))
+    return {name: float(number) for name, number in numbers.items()}, output
 
 
 def test_scores_are_those_of_the_library_with_the_unit_of_the_reference(maps, capsys):
-    numbers, said = told(capsys, "found.exr", "lit.exr")
+    numbers, output = run_score(capsys, "found.exr", "lit.exr")
     assert numbers == {
         "PSNR": pytest.approx(scores.psnr(FOUND, TRUTH), abs=0.01),
         "log PSNR": pytest.approx(scores.log_psnr(FOUND, TRUTH), abs=0.01),
         "PU-PSNR": pytest.approx(pu21.psnr(FOUND, TRUTH, luminance_of_unit=80), abs=0.01),
         "PU-SSIM": pytest.approx(pu21.ssim(FOUND, TRUTH, luminance_of_unit=80), abs=1e-4),
     }
-    assert "value 1 is 80 cd/m^2 (stated in the map)" in said and "not fitted" in said
+    assert "value 1 is 80 cd/m^2 (stated in the map)" in output and "not fitted" in output
 
 
 def test_without_a_unit_there_is_no_pu21_score_and_a_way_to_get_one(maps, capsys):
-    numbers, said = told(capsys, "found.exr", "truth.exr")
+    numbers, output = run_score(capsys, "found.exr", "truth.exr")
     assert set(numbers) == {"PSNR", "log PSNR"}
-    assert "relative units" in said and "--peak" in said
+    assert "relative units" in output and "--peak" in output
 
 
 def test_peak_is_the_luminance_of_the_brightest_value(maps, capsys):
-    numbers, said = told(capsys, "found.exr", "truth.exr", "--peak", 4000)
+    numbers, output = run_score(capsys, "found.exr", "truth.exr", "--peak", 4000)
     expected = scores.pu_psnr(FOUND, TRUTH, peak=4000)
     assert numbers["PU-PSNR"] == pytest.approx(expected, abs=0.01)
-    assert "(from --peak), brightest value 4000 cd/m^2" in said
+    assert "(from --peak), brightest value 4000 cd/m^2" in output
 
 
 def test_fit_removes_a_wrong_exposure_and_says_so(maps, capsys):
     radiance.write_radiance("bright.exr", 2 * TRUTH)
-    _, said = told(capsys, "bright.exr", "lit.exr", "--fit")
-    assert "exposure fitted, bright.exr times 0.5" in said and "inf dB" in said
+    _, output = run_score(capsys, "bright.exr", "lit.exr", "--fit")
+    assert "exposure fitted, bright.exr times 0.5" in output and "inf dB" in output
 
 
 def test_two_units_are_converted_to_one(maps, capsys):
     radiance.write_radiance("candela.exr", 80 * FOUND, luminance_of_unit=1)
-    numbers, _ = told(capsys, "candela.exr", "lit.exr")
+    numbers, _ = run_score(capsys, "candela.exr", "lit.exr")
     assert numbers["PU-PSNR"] == pytest.approx(
         pu21.psnr(FOUND, TRUTH, luminance_of_unit=80), abs=0.01
     )

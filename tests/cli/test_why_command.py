@@ -48,8 +48,8 @@ def test_why_explains_column_x_of_row_y(folder, capsys):
 
 def test_assemble_names_the_file_and_its_size(folder, tmp_path, capsys):
     out = tmp_path / "room.hdr"
-    code, said, _ = run("assemble", folder / "photos", "-o", out, "--why", capsys=capsys)
-    assert code == 0 and f"{tmp_path / 'room.why.npz'} (" in said and " MB)" in said
+    code, output, _ = run("assemble", folder / "photos", "-o", out, "--why", capsys=capsys)
+    assert code == 0 and f"{tmp_path / 'room.why.npz'} (" in output and " MB)" in output
 
 
 @pytest.mark.parametrize("pixel", ["90,20", "20,60", "20", "a,b", "20,3.5", "20,30,40"])
