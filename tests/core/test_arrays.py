@@ -126,10 +126,8 @@ def test_radiance_of_a_non_numeric_type_raises_an_error(values):
 
 
 def test_levels_are_those_of_the_type():
-    assert (
-        arrays.levels(np.zeros(1, np.uint8)) == 256
-        and arrays.levels(np.zeros(1, np.uint16)) == 65536
-    )
+    assert arrays.levels(np.zeros(1, np.uint8)) == 256
+    assert arrays.levels(np.zeros(1, np.uint16)) == 65536
 
 
 @given(st.integers(0, 255))

@@ -69,7 +69,7 @@ def test_gamut_hue_keeps_the_hue_that_clipping_would_change():
     L = colour.luminance(E)
     Ld = np.array([[0.9]])
 
-    def hue(C):  # where the middle channel stands between the least and the greatest
+    def hue(C):  # the position of the middle channel between the smallest and the largest
         least, middle, greatest = np.sort(C[0, 0])
         return (middle - least) / (greatest - least)
 
@@ -181,9 +181,8 @@ def test_render_accepts_ratio_and_hue():
         for saturation in (1.0, 0.6):
             picture = colour.render(E, L, Ld, saturation=saturation, way=way)
             exact = colour.to_8bit(verb(E, L, Ld, saturation=saturation))
-            assert (
-                np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
-            )
+            assert np.abs(picture.astype(int) - exact).max() <= 1
+            assert np.mean(picture != exact) < 1e-3
         assert np.array_equal(colour.render(L, L, Ld, way=way), colour.to_8bit(Ld))
     with pytest.raises(ValueError, match="ratio, hue.*'lab'"):
         colour.render(E, L, Ld, way="lab")

@@ -65,9 +65,8 @@ def test_a_colour_of_other_primaries_stops_where_its_least_channel_is_0():
     L = luminance_of(E)
     desaturated = gamut.desaturate(E)
     t = L / (L + 0.02)
-    assert np.allclose(
-        desaturated, L + t * (E - L), atol=1e-6
-    ) and desaturated.min() == pytest.approx(0, abs=1e-7)
+    assert np.allclose(desaturated, L + t * (E - L), atol=1e-6)
+    assert desaturated.min() == pytest.approx(0, abs=1e-7)
 
 
 def luminance_of(E):
@@ -77,10 +76,8 @@ def luminance_of(E):
 def test_slightly_negative_channels_lose_little_saturation_and_strongly_negative_ones_much():
     slightly = np.float32([[[1.0, 0.5, -0.001]]])
     deeply = np.float32([[[0.3, -0.1, 0.2]]])
-    assert (
-        saturation(gamut.sanitize(slightly).E)[0, 0] > 0.99
-        and saturation(gamut.sanitize(deeply).E)[0, 0] < 0.6
-    )
+    assert saturation(gamut.sanitize(slightly).E)[0, 0] > 0.99
+    assert saturation(gamut.sanitize(deeply).E)[0, 0] < 0.6
     assert saturation(np.maximum(deeply, 0))[0, 0] == 1
 
 
@@ -120,9 +117,9 @@ def test_unknown_regions_become_black_and_infinity_becomes_the_largest_finite_va
     E = np.full((7, 7), np.nan, np.float32)
     E[0, 0] = 5
     sanitized = gamut.sanitize(E)
-    assert (
-        sanitized.E[1, 1] == pytest.approx(5) and sanitized.E[6, 6] == 0 and sanitized.unknown == 48
-    )
+    assert sanitized.E[1, 1] == pytest.approx(5)
+    assert sanitized.E[6, 6] == 0
+    assert sanitized.unknown == 48
     bright = gamut.sanitize(np.float32([[1, np.inf, 9, np.inf]]))
     assert bright.E.tolist() == [[1, 9, 9, 9]] and bright.infinite == 2
     assert not gamut.sanitize(np.full((3, 4, 3), np.inf)).E.any(), (
@@ -170,9 +167,8 @@ def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
 def test_conversion_between_primaries_keeps_white_and_round_trips(primaries):
     there = gamut.conversion_matrix(primaries)
     back = gamut.conversion_matrix(gamut.SRGB, primaries)
-    assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(
-        there @ back, np.eye(3), atol=1e-9
-    )
+    assert np.allclose(there.sum(axis=1), 1, atol=1e-9)
+    assert np.allclose(there @ back, np.eye(3), atol=1e-9)
 
 
 def write_exr(path, E, primaries=None):
@@ -230,15 +226,11 @@ def test_sanitize_removes_the_magenta_from_the_shadows_of_a_real_map(shared):
     raw = read_exr(path)
     sanitized = read_sanitized(path)
     below = raw.min(axis=-1) < 0
-    assert (
-        sanitized.negative + sanitized.black == np.count_nonzero(below) == 9354
-        and sanitized.unknown == 0
-    )
+    assert sanitized.negative + sanitized.black == np.count_nonzero(below) == 9354
+    assert sanitized.unknown == 0
     lit = below & (raw.max(axis=-1) > 0)
-    assert (
-        np.median(saturation(sanitized.E)[lit]) < 0.6
-        and np.median(saturation(raw.clip(0))[lit]) == 1
-    )
+    assert np.median(saturation(sanitized.E)[lit]) < 0.6
+    assert np.median(saturation(raw.clip(0))[lit]) == 1
     assert np.array_equal(sanitized.E[~below], raw[~below])
     trusted = lit & (raw @ LUMINANCE > 0.51 * (raw.clip(0) @ LUMINANCE))
     assert np.allclose(luminance(sanitized.E)[trusted], (raw @ LUMINANCE)[trusted], rtol=1e-3)

@@ -24,9 +24,8 @@ def test_weights_of_16_bits_equal_those_of_8_at_common_levels(table):
 
 def test_the_hat_is_the_papers_triangle():
     w = weights.hat()
-    assert np.allclose(w[:128] * 127, np.arange(128)) and np.allclose(
-        w[128:] * 127, np.arange(127, -1, -1)
-    )
+    assert np.allclose(w[:128] * 127, np.arange(128))
+    assert np.allclose(w[128:] * 127, np.arange(127, -1, -1))
 
 
 def test_the_gaussian_falls_to_one_over_e_halfway():
