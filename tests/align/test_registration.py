@@ -243,10 +243,8 @@ def test_your_own_align_function_may_return_homographies(turned):
     taken, truth = turned
     moves = np.linalg.inv(truth[1]) @ truth
     assembly = next(pipeline.assemble_steps(taken, align=lambda images: moves))
-    assert (
-        np.allclose(assembly.homographies, moves)
-        and assembly.bracket.images.shape[1] < taken.images.shape[1]
-    )
+    assert np.allclose(assembly.homographies, moves)
+    assert assembly.bracket.images.shape[1] < taken.images.shape[1]
 
 
 def test_masks_are_warped_with_their_photos(turned):
@@ -308,4 +306,4 @@ def test_different_viewpoints_fit_better_by_homographies_than_by_rotations(share
     )
     assert not all(
         pair.reliable for pair in tilted
-    )  # depth, and a pair that shares little: this is told
+    )  # depth, and a pair with little overlap, which is reported
