@@ -41,8 +41,6 @@ def test_the_tightest_bound_of_the_frames_that_show_a_pixel_is_taken(levels, sho
 @given(st.lists(st.sampled_from([0, 250, 255]), min_size=3, max_size=3))
 def test_bounds_are_positive_and_flagged(levels):
     E, flag = answer(*levels)
-    assert (
-        np.isfinite(E)
-        and E > 0
-        and flag in (Quality.CLIPPED, Quality.DARK, Quality.CLIPPED | Quality.DARK)
-    )
+    assert np.isfinite(E)
+    assert E > 0
+    assert flag in (Quality.CLIPPED, Quality.DARK, Quality.CLIPPED | Quality.DARK)

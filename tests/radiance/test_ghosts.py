@@ -154,12 +154,10 @@ def test_a_frame_is_used_where_it_and_its_neighborhood_agree_with_the_reference(
     images[1, 10:20, 10:20] = 200
     taken = frames.calibrate_frames(images, [1, 2], LINEAR, np.full((30, 40), 50 / 128))
     used = reference.find_consistent_frames(taken, 0, (slice(None), slice(None)))
-    assert (
-        used[0].all()
-        and not used[1, 8:22, 8:22].any()
-        and used[1, :4].all()
-        and used[1, :, 30:].all()
-    )
+    assert used[0].all()
+    assert not used[1, 8:22, 8:22].any()
+    assert used[1, :4].all()
+    assert used[1, :, 30:].all()
 
 
 def test_a_frame_is_not_used_where_it_contradicts_the_bound_of_a_clipped_reference():
@@ -201,10 +199,8 @@ def test_the_error_in_moving_regions_is_ten_times_smaller_and_others_are_not_cha
         )
         outside = result.labels == 0
         assert np.array_equal(result.E[outside], plain.E[outside])
-        assert (
-            np.array_equal(result.quality[outside], plain.quality[outside])
-            and result.used[:, outside].all()
-        )
+        assert np.array_equal(result.quality[outside], plain.quality[outside])
+        assert result.used[:, outside].all()
 
 
 def test_a_figure_seen_in_the_only_unclipped_frame_is_found_as_one_region():
@@ -282,7 +278,7 @@ def test_remove_ghosts_does_not_change_its_arguments(moving):
         assert np.array_equal(copy, array)
 
 
-# What stands still
+# Static scenes
 
 
 def test_a_still_scene_has_no_moving_region_and_the_plain_map(wall):
@@ -363,14 +359,10 @@ def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clip
     g = np.log(np.maximum(np.arange(256), 0.5) / 128)
     taken = frames.calibrate_frames(images, [1, 2], g, E)
     frame = reference.read_frame(taken, 1, np.s_[:, :])
-    assert (
-        frame.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1]))
-        and frame.high[0, 1, 0] == np.inf
-    )
-    assert (
-        frame.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top]))
-        and frame.low[0, 1, 0] == 0
-    )
+    assert frame.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1]))
+    assert frame.high[0, 1, 0] == np.inf
+    assert frame.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top]))
+    assert frame.low[0, 1, 0] == 0
     assert frame.measured[0, :, 0].tolist() == [False, True, False]
 
 

@@ -170,9 +170,8 @@ def test_levels_without_pixels_give_no_equation():
     h[0, 20:50] = 10
     h[1, 80:200:4] = 10
     equations = ratios.collect_equations(*h)
-    assert equations.x[:30].tolist() == list(range(20, 50)) and equations.y[30:].tolist() == list(
-        range(80, 200, 4)
-    )
+    assert equations.x[:30].tolist() == list(range(20, 50))
+    assert equations.y[30:].tolist() == list(range(80, 200, 4))
     assert np.allclose(equations.y, 4 * equations.x)
 
 

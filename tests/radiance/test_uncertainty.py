@@ -128,9 +128,8 @@ def test_frame_order_does_not_matter_and_the_unit_of_time_scales_the_result():
     turned = merge_with_deviation(images[::-1], times[::-1], g, N, READ)
     slower = merge_with_deviation(images, 4 * times, g, N, READ)
     for expected, other, longer in zip(merged, turned, slower, strict=True):
-        assert np.allclose(other, expected, rtol=1e-5) and np.allclose(
-            4 * longer, expected, rtol=1e-5
-        )
+        assert np.allclose(other, expected, rtol=1e-5)
+        assert np.allclose(4 * longer, expected, rtol=1e-5)
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
@@ -139,10 +138,8 @@ def test_pixels_that_no_frame_measures_have_a_bound_and_an_infinite_deviation(ch
     images = images.reshape(*images.shape, *[1] * len(channels)) + np.zeros(channels, np.uint8)
     g = responses.true_g("linear")
     merged = merge_with_deviation(images, [1, 2], g, 1000)
-    assert (
-        merged.E.shape == merged.s.shape == images.shape[1:]
-        and merged.E.dtype == merged.s.dtype == np.float32
-    )
+    assert merged.E.shape == merged.s.shape == images.shape[1:]
+    assert merged.E.dtype == merged.s.dtype == np.float32
     assert np.isfinite(merged.s[0, 0]).all() and np.isinf(merged.s[0, 1:]).all()
     assert np.array_equal(merged.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
