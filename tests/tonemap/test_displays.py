@@ -33,9 +33,8 @@ def test_pq_and_hlg_signals_survive_a_round_trip(v):
 
 
 def test_pq_and_hlg_rise_with_light():
-    assert np.all(np.diff(transfer.pq(LIGHT)) > 0) and np.all(
-        np.diff(transfer.hlg(LIGHT / 10_000)) > 0
-    )
+    assert np.all(np.diff(transfer.pq(LIGHT)) > 0)
+    assert np.all(np.diff(transfer.hlg(LIGHT / 10_000)) > 0)
 
 
 def test_a_12_bit_step_of_pq_is_below_the_visible_threshold():

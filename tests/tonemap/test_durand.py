@@ -38,9 +38,8 @@ def test_the_base_has_the_requested_contrast_between_its_percentiles(contrast):
     low, high = durand.base_range(base, cut=0.01)
     after = durand.compress(base, low, high, contrast=contrast)
     ends = durand.base_range(after, cut=0.01)
-    assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4) and ends[
-        1
-    ] == pytest.approx(0, abs=1e-5)
+    assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4)
+    assert ends[1] == pytest.approx(0, abs=1e-5)
 
 
 def test_a_scene_of_little_contrast_is_not_stretched():
@@ -103,11 +102,9 @@ def test_the_weight_of_the_mean_rises_with_the_logarithm_of_k():
         weight = np.full((40, 40), 1000, np.float32)
         weight[20, 20] = k
         bases.append(durand.fix_uncertain(mean, weight, sigma_s=4.0)[20, 20])
-    assert (
-        bases[0] < 0.05
-        and bases[2] == 1
-        and bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
-    )
+    assert bases[0] < 0.05
+    assert bases[2] == 1
+    assert bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
 
 
 def test_more_contrast_is_a_darker_shadow():

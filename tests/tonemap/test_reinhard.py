@@ -129,9 +129,9 @@ def test_a_hot_pixel_does_not_change_the_automatic_key():
 
 
 def test_the_widths_are_the_papers():
-    assert (
-        len(reinhard.WIDTHS) == 9 and reinhard.WIDTHS[0] == 1 and round(reinhard.WIDTHS[-1]) == 43
-    )
+    assert len(reinhard.WIDTHS) == 9
+    assert reinhard.WIDTHS[0] == 1
+    assert round(reinhard.WIDTHS[-1]) == 43
     assert np.allclose(np.divide(reinhard.WIDTHS[1:], reinhard.WIDTHS[:-1]), 1.6)
 
 

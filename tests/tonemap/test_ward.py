@@ -140,11 +140,9 @@ def test_fill_uses_the_whole_display_without_exaggerating_contrast(white):
 def test_a_tolerance_too_small_to_stop_early_leaves_no_black_unused():
     L = laws.scene()
     ends = [np.exp(ward.curve(L, tolerance=t)[1][[0, -1]]) for t in (0.025, 1e-9)]
-    assert (
-        np.allclose(ends[1], [1, 100])
-        and 1 <= ends[0][0] < 1.13
-        and ends[0][1] == pytest.approx(100)
-    )
+    assert np.allclose(ends[1], [1, 100])
+    assert 1 <= ends[0][0] < 1.13
+    assert ends[0][1] == pytest.approx(100)
 
 
 def test_without_a_ceiling_all_brightnesses_are_equally_frequent():
