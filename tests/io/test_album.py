@@ -124,9 +124,8 @@ def test_photos_that_the_camera_merged_are_noted_in_one_line(tmp_path):
         exif.get_ifd(0x8769)[0xA401] = 3
         Image.fromarray(RGB).save(tmp_path / f"{j}.jpg", exif=exif)
     _, notes = read_noting(tmp_path)
-    assert len(notes) == 1 and notes[0].startswith(
-        "0.jpg (and 2 more) was put together by the camera out of several"
-    )
+    assert len(notes) == 1
+    assert notes[0].startswith("0.jpg (and 2 more) was put together by the camera out of several")
 
 
 def test_error_for_a_folder_without_photos_names_its_subfolders(tmp_path):

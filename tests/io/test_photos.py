@@ -146,10 +146,8 @@ def test_exposure_is_read_from_exif_of_every_format(tmp_path, suffix):
 
 def test_photo_with_damaged_exif_is_read(tmp_path):
     Image.fromarray(RGB8).save(tmp_path / "x.png", exif=b"Exif\0\0II*\0\xff\xff\xff\xff" + bytes(9))
-    assert (
-        np.array_equal(read_photo(tmp_path / "x.png"), RGB8)
-        and read_header(tmp_path / "x.png").exposure[0] is None
-    )
+    assert np.array_equal(read_photo(tmp_path / "x.png"), RGB8)
+    assert read_header(tmp_path / "x.png").exposure[0] is None
 
 
 def bracket_of(folder, times=(0.25, 1.0, 4.0), image=RGB8, **tags):
@@ -164,12 +162,11 @@ def test_bracket_of_a_folder_is_sorted_by_exposure_time(tmp_path):
         (tmp_path / name).write_text("not a photograph")
     (tmp_path / "folder.png").mkdir()
     bracket = read_bracket(tmp_path)
-    assert (
-        bracket.names == ("c.png", "a.png", "b.png")
-        and not bracket.linear
-        and bracket.valid is None
-    )
-    assert bracket.times.tolist() == [0.25, 1, 4] and bracket.images[:, 0, 0, 0].tolist() == [
+    assert bracket.names == ("c.png", "a.png", "b.png")
+    assert not bracket.linear
+    assert bracket.valid is None
+    assert bracket.times.tolist() == [0.25, 1, 4]
+    assert bracket.images[:, 0, 0, 0].tolist() == [
         1,
         11,
         21,
@@ -480,10 +477,8 @@ def test_the_memorial_bracket_has_its_blue_border_masked(shared):
     folder = shared("memorial")
     bracket = read_bracket(folder, folder / "memorial.hdr_image_list.txt", mask=(0, 0, 255))
     assert bracket.images.shape == (16, 768, 512, 3) and bracket.names[0] == "memorial0076.png"
-    assert (
-        np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid)
-        and not bracket.valid.all()
-    )
+    assert np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid)
+    assert not bracket.valid.all()
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".tif"])

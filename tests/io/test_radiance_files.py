@@ -23,9 +23,8 @@ def test_every_format_survives_a_round_trip(tmp_path, suffix):
     gray = E[..., 0].copy()
     write_radiance(tmp_path / f"x{suffix}", gray)
     read = read_radiance(tmp_path / f"x{suffix}")
-    assert read.dtype == np.float32 and np.array_equal(
-        read if read.ndim == 2 else read[..., 1], gray
-    )
+    assert read.dtype == np.float32
+    assert np.array_equal(read if read.ndim == 2 else read[..., 1], gray)
 
 
 @pytest.mark.parametrize("suffix", sorted(set(SUFFIXES) - {".pfm"}))
@@ -140,7 +139,8 @@ def test_describe_file_states_format_size_and_values(tmp_path, suffix, says):
     else:
         write_radiance(path, E)
     description = describe_file(path)
-    assert description["file"] == str(path) and (description["width"], description["height"]) == (
+    assert description["file"] == str(path)
+    assert (description["width"], description["height"]) == (
         9,
         7,
     )

@@ -96,9 +96,8 @@ def test_pixel_clipped_in_one_color_is_white(tmp_path):
     scene[:, :48] = (800, 1900, 800)
     Z = read_photo(dng(tmp_path / "x.dng", scene, matrix=CAMERA))
     assert np.all(Z[10:-10, 60:-10] == 65535)
-    assert np.all(Z[10:-10, 10:36, 1] < 65535) and np.all(
-        Z[10:-10, 10:36, 1] > 3 * Z[10:-10, 10:36, 0]
-    )
+    assert np.all(Z[10:-10, 10:36, 1] < 65535)
+    assert np.all(Z[10:-10, 10:36, 1] > 3 * Z[10:-10, 10:36, 0])
 
 
 def test_white_balance_does_not_tint_clipped_pixels(tmp_path):
@@ -206,9 +205,8 @@ def test_linear_dng_without_a_mosaic_is_read(tmp_path):
 def test_linear_dng_and_mosaic_of_one_scene_agree(tmp_path):
     dng(tmp_path / "a.dng", flat(400)), linear_dng(tmp_path / "b.dng", flat(100))
     bracket = read_bracket([tmp_path / "a.dng", tmp_path / "b.dng"], {"a.dng": 1.0, "b.dng": 0.25})
-    assert bracket.linear and middle(bracket.images[1]) / middle(
-        bracket.images[0]
-    ) == pytest.approx(4, rel=0.03)
+    assert bracket.linear
+    assert middle(bracket.images[1]) / middle(bracket.images[0]) == pytest.approx(4, rel=0.03)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -218,7 +216,7 @@ def test_dng_with_jpeg_xl_is_rejected_with_advice(order, tmp_path):
         assert np.allclose(
             tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1
         )  # another reader's
-    else:  # no writer at hand: the number of the compression alone
+    else:  # tifffile cannot write this compression, so only its number is set
         path = linear_dng(tmp_path / "pro.dng", flat(400), byteorder=">")
         none = struct.pack(">HHLH", 259, 3, 1, 1)
         packed = struct.pack(">HHLH", 259, 3, 1, 52546)

@@ -85,10 +85,8 @@ def profile(primaries, gamma=None):
 @pytest.mark.parametrize("suffix", ["webp", "avif", "heic", "jfif", "JPG", "HEIC", "WebP"])
 def test_formats_of_phones_are_read_with_their_exposure(tmp_path, suffix):
     path = save(tmp_path / f"x.{suffix}")
-    assert (
-        read_header(path).exposure == pytest.approx((0.25, 2, 80))
-        and read_header(path).shape == RGB.shape
-    )
+    assert read_header(path).exposure == pytest.approx((0.25, 2, 80))
+    assert read_header(path).shape == RGB.shape
     assert np.abs(read_photo(path).astype(int) - RGB).mean() < 2
     with Image.open(path) as image:
         assert np.abs(read_photo(path).astype(int) - np.asarray(image)).max() <= 1
@@ -184,9 +182,8 @@ def test_opaque_alpha_channels_are_ignored(tmp_path, deep):
     )
     (tmp_path / "gray.png").write_bytes(imagecodecs.png_encode(np.dstack([image[..., :1], alpha])))
     for name in "x.png", "x.tif":
-        assert read_header(tmp_path / name).shape == RGB.shape and np.array_equal(
-            read_photo(tmp_path / name), image
-        )
+        assert read_header(tmp_path / name).shape == RGB.shape
+        assert np.array_equal(read_photo(tmp_path / name), image)
     assert np.array_equal(read_photo(tmp_path / "gray.png"), image[..., 0])
 
 
@@ -289,6 +286,5 @@ def test_error_without_pillow_heif_says_what_to_install(tmp_path, monkeypatch):
 
 def test_written_pictures_without_a_profile_are_not_converted(tmp_path):
     write_picture(tmp_path / "x.png", RGB)
-    assert read_header(tmp_path / "x.png").icc == b"" and np.array_equal(
-        read_photo(tmp_path / "x.png"), RGB
-    )
+    assert read_header(tmp_path / "x.png").icc == b""
+    assert np.array_equal(read_photo(tmp_path / "x.png"), RGB)

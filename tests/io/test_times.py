@@ -247,8 +247,6 @@ def test_the_lists_of_the_memorial_bracket_agree(shared):
     folder = shared("memorial")
     times = read_times(folder / "memorial.hdr_image_list.txt").seconds
     assert times == read_times(folder / "exposures.csv").seconds
-    assert (
-        len(times) == 16
-        and times["memorial0061.png"] == 32
-        and times["memorial0076.png"] == 1 / 1024
-    )
+    assert len(times) == 16
+    assert times["memorial0061.png"] == 32
+    assert times["memorial0076.png"] == 1 / 1024

@@ -25,9 +25,8 @@ def test_tiff_maps_can_be_exchanged_with_opencv_bit_for_bit(tmp_path, E):
     theirs = tmp_path / "theirs.tiff"
     write_radiance(ours, E)
     read_by_opencv = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
-    assert read_by_opencv.dtype == np.float32 and np.array_equal(
-        read_by_opencv if E.ndim == 2 else read_by_opencv[..., ::-1], E
-    )
+    assert read_by_opencv.dtype == np.float32
+    assert np.array_equal(read_by_opencv if E.ndim == 2 else read_by_opencv[..., ::-1], E)
     bgr = E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1])
     # uncompressed: by itself, OpenCV before 4.11 writes colours as LogLuv, which loses
     assert cv2.imwrite(str(theirs), bgr, [cv2.IMWRITE_TIFF_COMPRESSION, 1])
@@ -73,7 +72,8 @@ def test_integer_tiff_is_rejected_as_a_map_and_info_describes_both(tmp_path):
     write_radiance(radiance, RGB, comments=["two frames of seven", "unit: cd/m²"])
     assert describe_file(photo)["values"] == "uint8"
     about = describe_file(radiance)
-    assert about["values"] == "float32" and about["comments"] == [
+    assert about["values"] == "float32"
+    assert about["comments"] == [
         "two frames of seven",
         "unit: cd/m²",
     ]
