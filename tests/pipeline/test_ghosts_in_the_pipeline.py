@@ -71,9 +71,9 @@ def test_auto_does_not_change_the_map_of_a_still_scene():
     taken = camera.shoot(scenes.room(SHAPE), camera.times_around(scenes.room(SHAPE), 5), rng=1)
     auto = pipeline.assemble(taken, align="none", ghosts="auto")
     none = pipeline.assemble(taken, align="none", ghosts="none")
-    assert (
-        np.array_equal(auto.E, none.E) and auto.moving is None and auto.doubts == none.doubts == ()
-    )
+    assert np.array_equal(auto.E, none.E)
+    assert auto.moving is None
+    assert auto.doubts == none.doubts == ()
 
 
 @pytest.mark.parametrize(("align", "is_cleaned"), [("auto", True), ("mtb", False)])

@@ -81,9 +81,8 @@ def test_release_gives_the_same_map_and_frees_the_memory_of_the_photos(hand_held
     expected = assemble(hand_held[0])
     taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, assembly = assemble_steps(taken, in_place=True, release=True)
-    assert np.array_equal(assembly.E, expected.E) and np.array_equal(
-        assembly.quality, expected.quality
-    )
+    assert np.array_equal(assembly.E, expected.E)
+    assert np.array_equal(assembly.quality, expected.quality)
     assert (assembly.notes, assembly.doubts, assembly.spread) == (
         expected.notes,
         expected.doubts,
@@ -112,9 +111,8 @@ def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     )
     ratio = assembly.E[well] / truth[well]
     ratio /= np.median(ratio, axis=0)
-    assert (
-        well.mean() > 0.7 and np.median(np.abs(ratio - 1)) < 0.015
-    )  # edges of half a pixel included
+    assert well.mean() > 0.7
+    assert np.median(np.abs(ratio - 1)) < 0.015  # edges of half a pixel included
     assert assembly.spread < 0.05
 
 
@@ -140,20 +138,16 @@ def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response)
     E = room if colours == 3 else luminance(room)
     taken = camera.shoot(E, camera.times_around(E, 5), camera.Camera(response=response, bits=bits))
     assembly = assemble(taken)
-    assert (
-        assembly.E.shape == E.shape
-        and assembly.E.dtype == np.float32
-        and assembly.quality.shape == E.shape[:2]
-    )
+    assert assembly.E.shape == E.shape
+    assert assembly.E.dtype == np.float32
+    assert assembly.quality.shape == E.shape[:2]
     well = assembly.quality == Quality.MEASURED
     ratio = assembly.E[well] / E[well]
     assert np.median(np.abs(ratio / np.median(ratio, axis=0) - 1)) < 0.02
     picture = develop(assembly.E)
-    assert (
-        picture.shape == E.shape
-        and picture.dtype == np.uint8
-        and picture.max() > 200 > 60 > picture.min()
-    )
+    assert picture.shape == E.shape
+    assert picture.dtype == np.uint8
+    assert picture.max() > 200 > 60 > picture.min()
 
 
 def test_a_linear_bracket_has_no_response_to_recover(room):
@@ -203,11 +197,9 @@ def test_masks_are_aligned_with_their_photos(hand_held):
     assembly = assemble(bracket(images, taken.times, valid=valid))
     assert assembly.bracket.valid.shape == assembly.bracket.images.shape[:3]
     unseen = ~assembly.bracket.valid.any(axis=0)
-    assert (
-        unseen.any()
-        and np.all(assembly.E[unseen] == 0)
-        and np.all(assembly.quality[unseen] == Quality.UNSEEN)
-    )
+    assert unseen.any()
+    assert np.all(assembly.E[unseen] == 0)
+    assert np.all(assembly.quality[unseen] == Quality.UNSEEN)
     blue = (assembly.bracket.images == (0, 0, 255)).all(axis=-1)
     assert not np.any(assembly.bracket.valid & blue)
 
