@@ -56,7 +56,8 @@ def test_grade_writes_every_form_into_one_folder(typed, tmp_path):
         "grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results"
     )
     names = {file.name for file in (tmp_path / "results").iterdir()}
-    assert code == 0 and names == {
+    assert code == 0
+    assert names == {
         "result.json",
         "gradescope.json",
         "junit.xml",
@@ -135,11 +136,9 @@ def test_the_course_is_built_and_exported(typed, tmp_path):
     code, out, _ = typed(
         "course", "build", "--plan", "plan.toml", "--sources", str(sources), "--out", "handouts"
     )
-    assert (
-        code == 0
-        and "hw2.ipynb" in out
-        and "def hat" in (tmp_path / "handouts" / "hw2.ipynb").read_text()
-    )
+    assert code == 0
+    assert "hw2.ipynb" in out
+    assert "def hat" in (tmp_path / "handouts" / "hw2.ipynb").read_text()
     code, out, _ = typed(
         "course", "export", "--plan", "plan.toml", "--nbgrader", "nb", "--gradescope", "gs"
     )

@@ -275,9 +275,8 @@ def test_uncertainty_writes_the_map_and_its_standard_deviation_as_layers(
     words = match[0]
     E, s = read_layers(both).values()
     assert np.array_equal(E, radiance.read_radiance(both)) and E.shape == s.shape
-    assert (
-        np.allclose(E, radiance.read_radiance(out)) and 0 < np.median((s / E)[np.isfinite(s)]) < 0.1
-    )
+    assert np.allclose(E, radiance.read_radiance(out))
+    assert 0 < np.median((s / E)[np.isfinite(s)]) < 0.1
     about = hdrlab("info", both, capsys=capsys)[1]
     assert "layers" in about and "radiance, standard deviation" in about and words in about
     assert words in (page / "report.html").read_text(encoding="utf8").replace("\u00a0", " ")
@@ -298,12 +297,10 @@ def test_uncertainty_rejects_other_formats_than_exr_before_the_work(photographs,
         ),
         capsys=capsys,
     )
-    assert (
-        code == 2
-        and errors.count("\n") == 1
-        and ".exr" in errors
-        and not (tmp_path / "x.pfm").exists()
-    )
+    assert code == 2
+    assert errors.count("\n") == 1
+    assert ".exr" in errors
+    assert not (tmp_path / "x.pfm").exists()
 
 
 def test_map_without_doubts_has_none_in_its_header_and_passes_strict(photographs, tmp_path, capsys):
@@ -473,9 +470,10 @@ def test_mostly_invalid_map_is_rejected_without_clean(value, tmp_path, capsys):
     pixels[:2] = value
     write_pfm(file, pixels)
     code, _, complaint = hdrlab("convert", file, "-o", out, capsys=capsys)
-    assert (
-        code == 2 and str(file) in complaint and "20 pixels" in complaint and "--clean" in complaint
-    )
+    assert code == 2
+    assert str(file) in complaint
+    assert "20 pixels" in complaint
+    assert "--clean" in complaint
     assert not out.exists() and hdrlab("convert", file, "-o", out, "--clean") == 0
     assert np.isfinite(radiance.read_radiance(out)).all()
 

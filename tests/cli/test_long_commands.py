@@ -73,6 +73,5 @@ def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(
         process.wait()
         os.close(terminal)
     assert ended.strip().endswith("hdrlab: interrupted") and "Traceback" not in ended
-    assert [file.name for file in tmp_path.iterdir()] == [
-        "out.png"
-    ] and out.read_bytes() == b"precious"
+    assert [file.name for file in tmp_path.iterdir()] == ["out.png"]
+    assert out.read_bytes() == b"precious"

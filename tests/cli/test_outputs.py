@@ -64,11 +64,9 @@ def test_no_command_overwrites_its_input(name, here, capsys):
     with pytest.raises(SystemExit) as stop:
         cli.run([*words, *COMMANDS[name].format(here=here).split()])
     errors = capsys.readouterr().err
-    assert (
-        stop.value.code == 2
-        and errors.count("\n") == 1
-        and ("another name" in errors or "a new name" in errors)
-    )
+    assert stop.value.code == 2
+    assert errors.count("\n") == 1
+    assert "another name" in errors or "a new name" in errors
     assert contents(here) == before
 
 
