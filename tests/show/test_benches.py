@@ -33,18 +33,16 @@ def test_reported_error_of_the_subject_is_that_of_its_picture():
 
 
 def test_noisier_sensor_loses_more_shadows_at_the_same_exposure():
-    good, poor = (
-        benches.meter_scene(BACKLIGHT, "average", sensor=sensor.Sensor(read_noise=noise))
-        for noise in (5, 300)
-    )
+    good = benches.meter_scene(BACKLIGHT, "average", sensor=sensor.Sensor(read_noise=5))
+    poor = benches.meter_scene(BACKLIGHT, "average", sensor=sensor.Sensor(read_noise=300))
     assert good.EV == poor.EV and poor.noise.mean() > good.noise.mean() + 0.1
 
 
 @pytest.mark.parametrize("mode", metering.MODES)
 def test_every_mode_reports_its_metered_pixels_and_spot_is_the_smallest(mode):
-    asked = benches.meter_scene(BACKLIGHT, mode).metered
-    assert asked.shape == BACKLIGHT.mask.shape and asked.any()
-    assert (asked.mean() < 0.06) == (mode == "spot")
+    metered = benches.meter_scene(BACKLIGHT, mode).metered
+    assert metered.shape == BACKLIGHT.mask.shape and metered.any()
+    assert (metered.mean() < 0.06) == (mode == "spot")
 
 
 def test_draw_shot_marks_clipped_pixels():
@@ -91,23 +89,22 @@ def test_draw_calibrated_states_the_number_of_aligned_photos():
 
 def test_mark_lost_makes_full_pixels_orange_and_noisy_ones_blue_and_keeps_the_rest():
     gray = np.full((2, 3), 90, np.uint8)
-    full, noise = np.zeros((2, 3), bool), np.zeros((2, 3), bool)
-    full[0, 0], noise[1, 1] = True, True
+    full = np.zeros((2, 3), bool)
+    noise = np.zeros((2, 3), bool)
+    full[0, 0] = True
+    noise[1, 1] = True
     shown = sensors.mark_lost(gray, full, noise)
-    assert np.array_equal(shown[0, 0], sensors.FULL_RGB) and np.array_equal(
-        shown[1, 1], sensors.NOISE_RGB
-    )
+    assert np.array_equal(shown[0, 0], sensors.FULL_RGB)
+    assert np.array_equal(shown[1, 1], sensors.NOISE_RGB)
     assert np.all(shown[0, 1:] == 90) and np.all(gray == 90)
 
 
 def test_window_states_the_fraction_of_recorded_pixels():
     held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     ax = sensors.window(L, held)
-    said = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert (
-        said[1] == f"recorded: {(~held.full & ~held.noise).mean():.0%}"
-        and "cd/m²" in ax.get_xlabel()
-    )
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels[1] == f"recorded: {(~held.full & ~held.noise).mean():.0%}"
+    assert "cd/m²" in ax.get_xlabel()
 
 
 def test_staircase_shows_all_values_of_the_converter():
@@ -119,7 +116,7 @@ def test_staircase_shows_all_values_of_the_converter():
 
 def test_line_of_a_photon_transfer_curve_has_slope_1_over_the_gain():
     S = np.linspace(0, 4000, 9)
-    found = photon_transfer.Transfer(
+    transfer = photon_transfer.Transfer(
         gain=5.0,
         read_noise=5.0,
         read_noise_interval=(4.9, 5.1),
@@ -129,8 +126,9 @@ def test_line_of_a_photon_transfer_curve_has_slope_1_over_the_gain():
         V=1 + S / 5,
         used=S < 3000,
     )
-    line = sensors.transfer(found).lines[-1]
-    (x0, x1), (y0, y1) = line.get_xdata(), line.get_ydata()
+    line = sensors.transfer(transfer).lines[-1]
+    x0, x1 = line.get_xdata()
+    y0, y1 = line.get_ydata()
     assert (y1 - y0) / (x1 - x0) == pytest.approx(0.2)
 
 

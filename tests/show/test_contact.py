@@ -33,11 +33,11 @@ def texts(figure):
 
 def test_sheet_shows_every_operator_with_its_name_and_its_statistics():
     sheet = draw(contact.entry_steps(SCENE), title="a scene")
-    said = texts(sheet)
-    assert said[0] == "a scene" and len(sheet.axes) == len(catalogue.names("tonemap"))
+    labels = texts(sheet)
+    assert labels[0] == "a scene" and len(sheet.axes) == len(catalogue.names("tonemap"))
     for name in catalogue.names("tonemap"):
         picture = pipeline.develop(SCENE, name)
-        under = said[said.index(name) + 1]
+        under = labels[labels.index(name) + 1]
         assert f"Q {quality.tmqi(colour.luminance(SCENE), picture).Q:.3f}" in under
         assert f"entropy {statistics(picture).entropy:.2f} bits" in under
         assert re.search(r"\d m?s\n", under), "a busy machine may take seconds"
@@ -46,9 +46,9 @@ def test_sheet_shows_every_operator_with_its_name_and_its_statistics():
 def test_entries_are_the_pictures_of_develop_in_the_requested_order():
     names = ["reinhard", "photograph", "curves"]
     entries = list(contact.entry_steps(SCENE, names))
-    assert [one.name for one in entries] == names
-    for one in entries:
-        assert np.array_equal(one.picture, pipeline.develop(SCENE, one.name))
+    assert [entry.name for entry in entries] == names
+    for entry in entries:
+        assert np.array_equal(entry.picture, pipeline.develop(SCENE, entry.name))
 
 
 def test_out_of_gamut_colors_are_rendered_as_requested():
@@ -62,7 +62,7 @@ def test_out_of_gamut_colors_are_rendered_as_requested():
 def test_measured_time_is_that_of_the_operator_alone(monkeypatch):
     monkeypatch.setattr(contact, "perf_counter", iter([10.0, 10.5, 20.0, 22.0]).__next__)
     entries = contact.entry_steps(SCENE, ["reinhard", "curves"])
-    assert [one.seconds for one in entries] == [0.5, 2.0]
+    assert [entry.seconds for entry in entries] == [0.5, 2.0]
 
 
 def test_own_functions_can_be_compared_with_library_operators_under_labels():
@@ -81,11 +81,16 @@ def test_entries_are_yielded_one_by_one_as_operators_finish():
 
 @pytest.mark.parametrize("shape", [(480, 360), (480, 360, 3), (300, 480, 3)])
 def test_picture_of_the_sheets_size_is_not_resampled(shape):
-    one = entry(shape=shape)
-    pixels = render(draw([one]))
-    top, left = 44, GAP
+    shown_entry = entry(shape=shape)
+    pixels = render(draw([shown_entry]))
+    top = 44
+    left = GAP
     shown = pixels[top : top + shape[0], left : left + shape[1]]
-    picture = one.picture if one.picture.ndim == 3 else np.stack([one.picture] * 3, axis=-1)
+    picture = (
+        shown_entry.picture
+        if shown_entry.picture.ndim == 3
+        else np.stack([shown_entry.picture] * 3, axis=-1)
+    )
     assert np.mean(np.abs(shown.astype(int) - picture) <= 1) > 0.99
 
 
@@ -158,14 +163,14 @@ def test_bad_entries_columns_suffix_or_alt_text_are_rejected(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("operators", "said"),
+    ("operators", "message"),
     [(["reinhard", "magic"], "magic"), ([], "none"), ("reinhard", "list of operators")],
 )
-def test_unknown_operators_are_rejected_before_the_first_one_runs(operators, said, monkeypatch):
+def test_unknown_operators_are_rejected_before_the_first_one_runs(operators, message, monkeypatch):
     monkeypatch.setattr(
         "hdrlab.tonemap.reinhard.tonemap", lambda L: pytest.fail("the first operator was run")
     )
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         next(contact.entry_steps(SCENE, operators))
 
 

@@ -58,9 +58,8 @@ def test_response_has_labels_and_a_color_and_line_style_for_each_channel():
 
 def test_response_has_exposure_on_x_and_pixel_values_on_y():
     (line,) = plots.response(LINEAR).lines
-    assert np.array_equal(line.get_xdata(), LINEAR) and np.array_equal(
-        line.get_ydata(), np.arange(256)
-    )
+    assert np.array_equal(line.get_xdata(), LINEAR)
+    assert np.array_equal(line.get_ydata(), np.arange(256))
 
 
 def test_two_responses_on_the_same_axes_have_two_labels():
@@ -70,7 +69,9 @@ def test_two_responses_on_the_same_axes_have_two_labels():
 
 
 def test_colors_of_the_channels_differ_for_color_blind_readers():
-    """What a dichromat sees is a projection of linear RGB [Vienot99]; 10 CIELAB units are plain to see."""
+    """A dichromat sees a projection of linear RGB [Vienot99]; a difference of 10 CIELAB units is
+    clearly visible.
+    """
     colours = [matplotlib.colors.to_rgb(colour) for _, colour, _ in plots.CHANNELS]
     protan = np.array([[0.11238, 0.88762, 0], [0.11238, 0.88762, 0], [0.00401, -0.00401, 1]])
     deutan = np.array([[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]])
@@ -87,7 +88,9 @@ def test_response_rejects_arrays_of_another_shape(shape):
 
 
 def test_samples_are_at_ln_irradiance_plus_ln_time():
-    Z, lE, B = np.array([[10, 20, 40], [30, 60, 120]]), np.array([0.5, 1.6]), np.log([1, 2, 4])
+    Z = np.array([[10, 20, 40], [30, 60, 120]])
+    lE = np.array([0.5, 1.6])
+    B = np.log([1, 2, 4])
     lines = plots.samples(Z, lE, B).lines
     assert all(np.allclose(line.get_xdata(), lE[i] + B) for i, line in enumerate(lines))
     assert all(np.array_equal(line.get_ydata(), Z[i]) for i, line in enumerate(lines))
@@ -156,7 +159,8 @@ def test_thumbnails_have_times_and_offsets_as_titles(dtype, channels):
 
 def test_rendering_axes_and_their_figure_gives_the_same_pixels():
     ax = plots.response(LINEAR)
-    first, second = pictures.render(ax), pictures.render(ax.figure)
+    first = pictures.render(ax)
+    second = pictures.render(ax.figure)
     assert first.shape == (360, 540, 3) and first.dtype == np.uint8
     assert np.array_equal(first, second)
 
@@ -217,7 +221,8 @@ def test_plots_have_two_pixels_per_css_pixel():
         assert web.decode_picture(frame).shape == (720, 1080, 3)
     assert strip._repr_html_().count("max-width:min(640px,") == 2
     ax = curve()
-    assert pictures.render(ax, 2).shape == (720, 1080, 3) and pictures.render(ax).shape == (
+    assert pictures.render(ax, 2).shape == (720, 1080, 3)
+    assert pictures.render(ax).shape == (
         360,
         540,
         3,

@@ -12,9 +12,12 @@ RAMP = np.repeat(np.arange(0, 240, 2, dtype=np.uint8)[None], 40, axis=0)
 
 def test_choice_has_its_pictures_and_the_true_answer():
     pictures = [np.full((30, 40), level, np.uint8) for level in (50, 150)]
-    asked = predict.choice("Which is brighter?", 1, ["left", "right"], pictures=pictures)
-    assert (asked.truth, asked.told) == (1, "right.")
-    assert [int(web.decode_picture(one).mean().round()) for one in asked.pictures] == [50, 150]
+    question = predict.choice("Which is brighter?", 1, ["left", "right"], pictures=pictures)
+    assert (question.truth, question.told) == (1, "right.")
+    assert [int(web.decode_picture(picture).mean().round()) for picture in question.pictures] == [
+        50,
+        150,
+    ]
 
 
 def test_the_slider_for_an_integer_has_whole_steps():
@@ -30,9 +33,9 @@ def test_the_slider_for_another_number_has_steps_of_at_most_two_percent(truth, b
 
 def test_curve_has_margins_and_at_most_257_points():
     x = np.arange(65536)
-    asked = predict.curve("Draw it.", x, np.sqrt(x), names=("level", "light"))
-    xs, ys = asked.truth
-    assert asked.scale[:2] == [0, 65535] and asked.scale[2] < 0 and asked.scale[3] > 256
+    question = predict.curve("Draw it.", x, np.sqrt(x), names=("level", "light"))
+    xs, ys = question.truth
+    assert question.scale[:2] == [0, 65535] and question.scale[2] < 0 and question.scale[3] > 256
     assert len(xs) == 257 and np.allclose(ys, np.sqrt(xs))
 
 
@@ -54,8 +57,8 @@ def test_scale_of_a_curve_ends_on_round_numbers_beyond_the_curve(y, ends):
 def test_mask_of_a_place_has_the_size_of_its_picture_and_keeps_single_pixels(size):
     mask = np.zeros(size, bool)
     mask[size[0] // 2, size[1] // 2] = True
-    asked = predict.place("Where?", mask, np.zeros(size, np.uint8), alt="Night")
-    picture, right = map(web.decode_picture, asked.pictures)
+    question = predict.place("Where?", mask, np.zeros(size, np.uint8), alt="Night")
+    picture, right = map(web.decode_picture, question.pictures)
     assert picture.shape == right.shape and max(picture.shape) <= 960
     assert np.count_nonzero(right[..., 0]) == 1
 
@@ -81,10 +84,10 @@ def test_questions_with_bad_answers_are_rejected(what):
 
 
 def test_question_without_a_widget_has_an_answer_that_opens_on_a_click():
-    asked = predict.number(
+    question = predict.number(
         "How many stops?", 11.4, (0, 20), unit="stops", because="A photograph holds <8."
     )
-    data, _ = asked._repr_mimebundle_()
+    data, _ = question._repr_mimebundle_()
     assert data["text/plain"] == "How many stops?"
     assert (
         "<summary>Answer</summary>11.4 stops. A photograph holds &lt;8.</details>"

@@ -96,9 +96,9 @@ def test_center_is_framed_in_a_tie():
 
 def test_plots_of_validations_show_the_failure_and_have_the_same_height():
     state = STATES[-1]
-    found = replace(register(PAIR, "mtb").pairs[0], failure="")
-    good = drawn.validated(state, found)
-    bad = drawn.validated(state, replace(found, failure="it " * 30))
+    pair = replace(register(PAIR, "mtb").pairs[0], failure="")
+    good = drawn.validated(state, pair)
+    bad = drawn.validated(state, replace(pair, failure="it " * 30))
     assert "it it" not in titles(good)[0] and titles(bad)[0].count("it it") > 1
     assert pictures.render(good).shape == pictures.render(bad).shape
 

@@ -14,7 +14,7 @@ def texts(ax):
 
 
 def drawn(ax):
-    """Return the bits that stand in the boxes, line by line."""
+    """Return the bits in the boxes, line by line."""
     placed = [
         (y, x, line.get_marker().strip("$")) for line in ax.lines for x, y in line.get_xydata()
     ]
@@ -24,16 +24,16 @@ def drawn(ax):
 def test_rgbe_shows_the_four_bytes_of_the_slides_pixel_and_their_values():
     ax = bits.rgbe(np.array([145, 215, 87, 149], np.uint8))
     assert drawn(ax) == "10010001" + "11010111" + "01010111" + "10010101"
-    said = texts(ax)
-    assert "145, so 1.188e+06" in said and "149: 2^21 / 256 = 8.19e+03" in said
+    labels = texts(ax)
+    assert "145, so 1.188e+06" in labels and "149: 2^21 / 256 = 8.19e+03" in labels
 
 
 @given(st.tuples(*[st.integers(0, 255)] * 4))
 def test_values_beside_the_mantissas_are_those_that_rgbe_decodes(pixel):
     given_ = np.array(pixel, np.uint8)
     E = rgbe.to_radiance(given_[None, None])[0, 0]
-    said = [text.split("so ")[1] for text in texts(bits.rgbe(given_)) if "so " in text]
-    assert [float(one) for one in said] == pytest.approx(E.tolist(), rel=1e-3, abs=0)
+    labels = [text.split("so ")[1] for text in texts(bits.rgbe(given_)) if "so " in text]
+    assert [float(label) for label in labels] == pytest.approx(E.tolist(), rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize("pixel", [np.zeros(3, np.uint8), np.zeros(4), [1, 2, 3, 4]])
@@ -47,22 +47,23 @@ def test_rgbe_rejects_anything_but_four_bytes(pixel):
 )
 @pytest.mark.parametrize("value", [0.7, -3.0, 1e-6, 0.0, 12345.0])
 def test_number_shows_the_bits_of_numpys_format(size, kind, word, value):
-    wanted = f"{int(kind(value).view(word)):0{size}b}"
-    assert drawn(bits.number(value, bits=size)) == wanted
+    expected = f"{int(kind(value).view(word)):0{size}b}"
+    assert drawn(bits.number(value, bits=size)) == expected
 
 
 @pytest.mark.parametrize("value", [0.7, 1e-6, 3e-5, 1000.0])
 def test_power_of_two_times_mantissa_is_the_number(value):
-    said = texts(bits.number(value))
-    power = next(text.split("^")[1] for text in said if "2^" in text)
-    times = next(text.split()[1] for text in said if text.startswith("times"))
+    labels = texts(bits.number(value))
+    power = next(text.split("^")[1] for text in labels if "2^" in text)
+    times = next(text.split()[1] for text in labels if text.startswith("times"))
     assert 2.0 ** int(power) * float(times) == pytest.approx(float(np.float16(value)), rel=1e-6)
 
 
 def test_number_beyond_the_largest_half_is_infinity():
-    said = texts(bits.number(1e5))
-    assert any("infinity" in text for text in said) and not any("times" in text for text in said)
-    assert "100000" in said[-1] and "inf" in said[-1]
+    labels = texts(bits.number(1e5))
+    assert any("infinity" in text for text in labels)
+    assert not any("times" in text for text in labels)
+    assert "100000" in labels[-1] and "inf" in labels[-1]
 
 
 def test_number_rejects_other_sizes():

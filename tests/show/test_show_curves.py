@@ -17,12 +17,14 @@ def legend(ax):
 
 
 def test_lines_draws_each_curve_with_its_own_label_color_and_style():
-    given = {name: PLACES * k for k, name in enumerate("abcdef")}
-    ax = curves.lines(PLACES, given, **NAMES)
-    assert (
-        legend(ax) == list("abcdef") and ax.get_xlabel() == "turn" and ax.get_ylabel() == "error, %"
+    curves_by_name = {name: PLACES * k for k, name in enumerate("abcdef")}
+    ax = curves.lines(PLACES, curves_by_name, **NAMES)
+    assert legend(ax) == list("abcdef")
+    assert ax.get_xlabel() == "turn"
+    assert ax.get_ylabel() == "error, %"
+    assert all(
+        np.array_equal(line.get_ydata(), curves_by_name[line.get_label()]) for line in ax.lines
     )
-    assert all(np.array_equal(line.get_ydata(), given[line.get_label()]) for line in ax.lines)
     looks = {(line.get_color(), str(line._dash_pattern)) for line in ax.lines}
     assert len(looks) == len({line.get_color() for line in ax.lines}) == 6
 
@@ -57,18 +59,18 @@ def test_deviation_of_a_response_that_is_one_stop_off_is_one():
     _, right, twice = ax.lines  # the first is the line of zero
     assert np.allclose(right.get_ydata(), 0) and np.allclose(twice.get_ydata(), 1)
     assert np.allclose(twice.get_xdata(), LINEAR[10:251] / np.log(2)) and ax.get_ylim() == (-2, 2)
-    assert (
-        "stops" in ax.get_xlabel()
-        and "stops" in ax.get_ylabel()
-        and legend(ax) == ["right", "twice"]
-    )
+    assert "stops" in ax.get_xlabel()
+    assert "stops" in ax.get_ylabel()
+    assert legend(ax) == ["right", "twice"]
 
 
 def test_bundle_draws_all_curves_and_uses_no_color_of_the_named_ones():
     ax = curves.bundle(PLACES, [PLACES, 2 * PLACES, 3 * PLACES], label="three", **NAMES)
     curves.lines(PLACES, {"mean": 2 * PLACES}, ax=ax, **NAMES)
-    (drawn,) = (one for one in ax.collections if isinstance(one, LineCollection))
-    assert len(drawn.get_segments()) == 3 and np.allclose(drawn.get_segments()[2][:, 1], 3 * PLACES)
+    drawn = [artist for artist in ax.collections if isinstance(artist, LineCollection)]
+    assert len(drawn) == 1
+    segments = drawn[0].get_segments()
+    assert len(segments) == 3 and np.allclose(segments[2][:, 1], 3 * PLACES)
     assert legend(ax) == ["three", "mean"] and ax.lines[0].get_color() == curves.LINE_STYLES[0][0]
     assert ax.get_ylim()[1] >= 27
 

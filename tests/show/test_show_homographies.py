@@ -11,7 +11,7 @@ from hdrlab.show.plots.lectures import homographies as drawn
 RNG = np.random.default_rng(0)
 WALL = np.kron(RNG.uniform(0.5, 2, (14, 18)), np.ones((8, 8))).astype(np.float32)
 X = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the first moved by (-3, 4)
-TRUE = warp.as_homographies([[-3, 4]])[0]
+TRUE_HOMOGRAPHY = warp.as_homographies([[-3, 4]])[0]
 
 
 def title(drawn):
@@ -19,13 +19,13 @@ def title(drawn):
 
 
 def test_error_after_the_true_homography_is_zero():
-    assert title(drawn.difference(X, TRUE)) == "error e = 0.0000"
+    assert title(drawn.difference(X, TRUE_HOMOGRAPHY)) == "error e = 0.0000"
     d, e = drawn.differences(X, np.eye(3))
     assert e == pytest.approx(np.mean(d**2)) and f"{e:.4f}" in title(drawn.difference(X, np.eye(3)))
 
 
 def test_pixels_outside_of_a_photo_are_gray():
-    shown = drawn.difference(X, TRUE).images[0].get_array()
+    shown = drawn.difference(X, TRUE_HOMOGRAPHY).images[0].get_array()
     assert np.all(shown[-1] == 128) and np.all(shown[:, 0] == 128) and not np.all(shown[40] == 128)
 
 
@@ -38,7 +38,8 @@ def test_color_shows_which_photo_is_brighter():
 
 def test_maximum_of_the_drawn_correlation_is_at_the_true_shift():
     figure = drawn.correlation(cerman.correlation(X), marks={"true": (-3, 4)})
-    image, (line,) = figure.axes[0].images[0], figure.axes[0].lines
+    image = figure.axes[0].images[0]
+    (line,) = figure.axes[0].lines
     y, x = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
     assert (
         (y - X.shape[1] + 1, x - X.shape[2] + 1)
@@ -49,7 +50,7 @@ def test_maximum_of_the_drawn_correlation_is_at_the_true_shift():
 
 def test_level_shows_the_difference_and_the_error_of_every_step():
     state = cerman.State(
-        level=2, X=X, path=np.zeros((5, 3)), errors=np.geomspace(0.1, 0.01, 5), H=TRUE
+        level=2, X=X, path=np.zeros((5, 3)), errors=np.geomspace(0.1, 0.01, 5), H=TRUE_HOMOGRAPHY
     )
     figure = drawn.level(state)
     assert "level 2" in title(figure) and "e = 0.0100" in title(figure)
@@ -59,6 +60,6 @@ def test_level_shows_the_difference_and_the_error_of_every_step():
 
 def test_difference_and_correlation_reject_arrays_of_another_shape():
     with pytest.raises(ValueError, match="light of two photographs"):
-        drawn.difference(X[0], TRUE)
+        drawn.difference(X[0], TRUE_HOMOGRAPHY)
     with pytest.raises(ValueError, match="at shifts -n to n"):
         drawn.correlation(np.zeros((4, 5)))

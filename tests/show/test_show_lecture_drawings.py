@@ -30,13 +30,15 @@ def test_samples_of_blends_are_at_their_exposure_and_pixel_value():
 
 def test_samples_with_joined_scales_lie_on_the_joined_curve():
     ax = mixtures.samples(TWO, ROOT.s, ROOT.r, joined=ROOT)
-    curve, *dots = (points_of(line) for line in ax.lines)
-    for X, level in dots:
+    curve = points_of(ax.lines[0])
+    for dots in ax.lines[1:]:
+        X, level = points_of(dots)
         assert np.allclose(np.interp(X, *curve), level, atol=3)  # a root is steep at 0
 
 
 def test_few_blends_have_different_styles_and_many_have_the_same():
-    few, many = mixtures.samples(TWO), mixtures.samples(TWO * 4)
+    few = mixtures.samples(TWO)
+    many = mixtures.samples(TWO * 4)
     assert len({(line.get_color(), line.get_marker()) for line in few.lines}) == 2
     assert len({(line.get_color(), line.get_marker()) for line in many.lines}) == 1
     assert few.get_legend() is None and many.get_legend() is None
@@ -50,7 +52,8 @@ def test_samples_has_axis_labels_and_a_logarithmic_scale_on_request():
 
 def test_deviations_of_the_true_curve_are_zero_and_of_a_wrong_one_in_percent():
     ax = mixtures.deviations({"true": ROOT, "a line": ROOT._replace(X=M)}, lambda M: M**2)
-    _, true, line = (points_of(one) for one in ax.lines)
+    true = points_of(ax.lines[1])
+    line = points_of(ax.lines[2])
     assert np.abs(true[1]).max() < 1e-9
     assert line[1].max() == pytest.approx(25, abs=0.01)  # M - M^2 is 1/4 at its most
     assert "%" in ax.get_ylabel()
@@ -86,7 +89,8 @@ def test_circle_rejects_anything_but_a_finite_2_by_2_matrix(A):
 
 
 def test_each_equation_is_drawn_as_the_line_of_its_solutions():
-    A, b = np.array([[1.0, 2.0], [3.0, -1.0], [0.0, 0.0]]), np.array([2.0, 1.0, 0.0])
+    A = np.array([[1.0, 2.0], [3.0, -1.0], [0.0, 0.0]])
+    b = np.array([2.0, 1.0, 0.0])
     drawn = [points_of(line) for line in geometry.equations(A, b).lines[2:]]
     assert len(drawn) == 2  # 0 = 0 holds everywhere, and is no line
     for row, right, ends in zip(A, b, drawn, strict=False):
@@ -94,7 +98,8 @@ def test_each_equation_is_drawn_as_the_line_of_its_solutions():
 
 
 def test_residual_is_constant_on_a_ring():
-    A, b = np.array([[2.0, 0.0], [0.0, 0.5]]), np.zeros(2)
+    A = np.array([[2.0, 0.0], [0.0, 0.5]])
+    b = np.zeros(2)
     (rings,) = geometry.equations(A, b).collections
     for level, path in zip(rings.levels, rings.get_paths(), strict=True):
         if len(path.vertices) > 2:
@@ -104,9 +109,9 @@ def test_residual_is_constant_on_a_ring():
 def test_single_points_have_larger_markers_than_clouds_of_points():
     cloud = np.random.default_rng(0).standard_normal((2, 50))
     ax = geometry.equations(np.eye(2), np.ones(2), {"answers": cloud, "truth": [1, 1]})
-    many, one = ax.lines[-2:]
-    assert np.allclose(points_of(many), cloud) and np.allclose(points_of(one), 1)
-    assert one.get_markersize() > many.get_markersize()
+    many, single = ax.lines[-2:]
+    assert np.allclose(points_of(many), cloud) and np.allclose(points_of(single), 1)
+    assert single.get_markersize() > many.get_markersize()
 
 
 @pytest.mark.parametrize(("A", "b"), [(np.ones((3, 3)), np.ones(3)), (np.ones((3, 2)), np.ones(2))])
@@ -117,8 +122,9 @@ def test_equations_rejects_systems_with_other_than_two_unknowns(A, b):
 
 def test_spectrum_shows_decades_below_the_largest_singular_value_with_a_floor():
     ax = geometry.spectrum({"one": [200.0, 2.0, 0.0], "two": [1.0, 0.1]}, least=1e-17)
-    one, two = (points_of(line) for line in ax.lines)
-    assert np.allclose(one, [[1, 2, 3], [0, -2, -17]]) and np.allclose(two[1], [0, -1])
+    first = points_of(ax.lines[0])
+    second = points_of(ax.lines[1])
+    assert np.allclose(first, [[1, 2, 3], [0, -2, -17]]) and np.allclose(second[1], [0, -1])
     assert ax.get_ylim()[0] < -17
 
 

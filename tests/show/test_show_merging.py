@@ -22,14 +22,17 @@ def lines(ax):
 
 
 def test_measurement_is_g_minus_ln_t_in_stops():
-    (dots,) = (c for c in drawn().collections if c.get_label() == "measured")
-    assert dots.get_offsets().tolist() == [[1.0, pytest.approx(-1.0)]]
+    dots = [artist for artist in drawn().collections if artist.get_label() == "measured"]
+    assert len(dots) == 1
+    assert dots[0].get_offsets().tolist() == [[1.0, pytest.approx(-1.0)]]
 
 
 def test_dark_and_clipped_pixels_are_arrows_down_and_up_from_their_bounds():
     ax = drawn()
-    down, up = lines(ax)["at most"], lines(ax)["at least"]
-    at_most, at_least = np.log2(1 / 128 / 0.25), np.log2(250 / 128 / 4)
+    down = lines(ax)["at most"]
+    up = lines(ax)["at least"]
+    at_most = np.log2(1 / 128 / 0.25)
+    at_least = np.log2(250 / 128 / 4)
     assert (down.get_xdata()[0], up.get_xdata()[0]) == (0, 2)
     assert down.get_ydata()[0] < at_most and up.get_ydata()[0] > at_least
     starts = [c.get_segments()[0][0] for c in ax.collections if hasattr(c, "get_segments")][1:]

@@ -15,15 +15,15 @@ C = mosaic.tile(mosaic.BAYER, X.shape)
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.5, 0.5), (0.5, 0.4), (1.0, 1.0)])
 def test_the_weights_give_the_color_that_demosaicing_gives(method, place):
-    found = mosaics.find_neighbors(X, C, METHODS[method], down=place[0], right=place[1])
-    assert found.color == pytest.approx(METHODS[method](X, C)[found.y, found.x])
-    assert found.weights.sum(axis=(1, 2)) == pytest.approx(1)
+    neighbors = mosaics.find_neighbors(X, C, METHODS[method], down=place[0], right=place[1])
+    assert neighbors.color == pytest.approx(METHODS[method](X, C)[neighbors.y, neighbors.x])
+    assert neighbors.weights.sum(axis=(1, 2)) == pytest.approx(1)
 
 
 def test_each_neighbor_with_a_weight_is_named_once():
-    found = mosaics.find_neighbors(X, C, mosaic.demosaic, down=0.5, right=0.4)
-    assert C[found.y, found.x] == 1
-    texts = [text.get_text() for text in mosaics.draw_neighbors(found).texts]
+    neighbors = mosaics.find_neighbors(X, C, mosaic.demosaic, down=0.5, right=0.4)
+    assert C[neighbors.y, neighbors.x] == 1
+    texts = [text.get_text() for text in mosaics.draw_neighbors(neighbors).texts]
     halves = [text for text in texts if text.endswith("+1/2")]
     assert sorted(halves) == ["B +1/2", "B +1/2", "R +1/2", "R +1/2"]
 

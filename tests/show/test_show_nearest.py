@@ -73,7 +73,8 @@ def test_extent_has_the_same_meaning_as_with_imshow():
 
 
 def test_image_is_part_of_an_svg():
-    ax, file = Figure((3, 2)).add_axes((0, 0, 1, 1)), io.BytesIO()
+    ax = Figure((3, 2)).add_axes((0, 0, 1, 1))
+    file = io.BytesIO()
     show(ax, np.eye(4), colours="gray")
     ax.figure.savefig(file, format="svg")
     assert b"data:image/png;base64" in file.getvalue()

@@ -42,7 +42,8 @@ def test_signed_map_is_white_at_zero_violet_below_and_orange_above():
 
 def test_several_maps_have_the_same_scale():
     figure = tones.maps({"little": RAMP, "much": RAMP * 2}, label="decades")
-    little, much = (ax.images[0].norm for ax in figure.axes[:2])
+    little = figure.axes[0].images[0].norm
+    much = figure.axes[1].images[0].norm
     assert (little.vmin, little.vmax) == (much.vmin, much.vmax)
 
 
@@ -69,18 +70,19 @@ def test_constant_map_can_be_drawn_and_nan_is_gray():
 
 
 @pytest.mark.parametrize(
-    "each", [{}, {"a": np.zeros(4)}, {"a": RAMP, "b": RAMP[1:]}, dict.fromkeys("abcd", RAMP)]
+    "maps", [{}, {"a": np.zeros(4)}, {"a": RAMP, "b": RAMP[1:]}, dict.fromkeys("abcd", RAMP)]
 )
-def test_maps_rejects_none_too_many_and_maps_of_different_shapes(each):
+def test_maps_rejects_none_too_many_and_maps_of_different_shapes(maps):
     with pytest.raises(ValueError, match="maps"):
-        tones.maps(each, label="x")
+        tones.maps(maps, label="x")
 
 
 def test_trims_shows_the_histogram_before_and_after_and_the_ceiling():
     f = np.array([3.0, 9.0, 5.0])
     ax = tones.trims([0, 1, 2, 3], f, np.minimum(f, 4), ceiling=4)
-    was, left = (patch.get_data().values for patch in ax.patches)
-    assert was.tolist() == [3, 9, 5] and left.tolist() == [3, 4, 4]
+    before, after = ax.patches
+    assert before.get_data().values.tolist() == [3, 9, 5]
+    assert after.get_data().values.tolist() == [3, 4, 4]
     assert ax.lines[0].get_ydata()[0] == 4
     assert "ceiling" in ax.get_legend().get_texts()[-1].get_text()
 
@@ -97,9 +99,9 @@ def test_trims_rejects_edges_that_do_not_fit_the_bins():
 
 def test_bands_draws_a_global_curve_narrow_and_a_local_operator_wide():
     L = np.geomspace(1, 1024, 64 * 64).astype(np.float32).reshape(64, 64)
-    one = curves.tonemap(L)
-    many = np.clip(one * np.linspace(0.5, 1, 64, dtype=np.float32), 0, 1)
-    ax = tones.bands({"curve": curves.spread(L, one), "operator": curves.spread(L, many)})
+    global_curve = curves.tonemap(L)
+    many = np.clip(global_curve * np.linspace(0.5, 1, 64, dtype=np.float32), 0, 1)
+    ax = tones.bands({"curve": curves.spread(L, global_curve), "operator": curves.spread(L, many)})
     pairs = zip(ax.lines[::2], ax.lines[1::2], strict=True)
     widths = [np.median(high.get_ydata() - low.get_ydata()) for low, high in pairs]
     assert 0 < widths[0] < 5 < 20 < widths[1]

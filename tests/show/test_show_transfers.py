@@ -17,13 +17,14 @@ def legend(ax):
 
 
 def two(k=2):
-    """Return histograms (256,) of even light, and of k times as much."""
+    """Return histograms (256,) of uniform light, and of k times as much."""
     light = (np.arange(40_000) + 0.5) / 40_000 * 120
     return [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1, k)]
 
 
 def test_comparagram_has_the_first_frame_on_x_and_the_second_on_y():
-    A, B = np.full((4, 4), 30, np.uint8), np.full((4, 4), 200, np.uint8)
+    A = np.full((4, 4), 30, np.uint8)
+    B = np.full((4, 4), 200, np.uint8)
     ax = transfers.comparagram(comparagram(A, B))
     shown = ax.images[0].get_array()
     assert shown[200, 30] == 16 and np.ma.count(np.ma.masked_invalid(shown)) == 1
@@ -90,13 +91,13 @@ def test_ladder_of_a_power_law_is_a_line_whose_slope_is_the_exponent():
     ax = transfers.ladders({"gamma": (s, 0.5)})
     points, line = ax.lines
     assert legend(ax) == ["gamma: slope 0.45"]
-    assert np.allclose(
-        points.get_ydata(), line.get_ydata()
-    ) and points.get_xdata().tolist() == list(range(0, -8, -1))
+    assert np.allclose(points.get_ydata(), line.get_ydata())
+    assert points.get_xdata().tolist() == list(range(0, -8, -1))
 
 
 def test_equations_subtracts_a_multiple_and_marks_rejected_equations():
-    x, used = np.arange(1.0, 11), np.arange(10) != 4
+    x = np.arange(1.0, 11)
+    used = np.arange(10) != 4
     ax = transfers.equations(x, 4 * x + np.where(used, 0, 9), used, 4.02, against=4)
     out, kept, line = ax.lines
     assert out.get_ydata().tolist() == [9] and np.allclose(kept.get_ydata(), 0)

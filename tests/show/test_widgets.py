@@ -30,8 +30,9 @@ def same(picture):
 
 
 def unrolled(frame):
-    """Return the picture that was written as runs of one colour, as a script would, run by run."""
-    (width, height), rest = np.frombuffer(frame[:8], "<u4"), frame[8:]
+    """Return the image of run-length encoded colors, decoded run by run as a script would."""
+    width, height = np.frombuffer(frame[:8], "<u4")
+    rest = frame[8:]
     rows = [
         pixel
         for at in range(0, len(rest), 4)
@@ -150,7 +151,7 @@ def test_sliders_without_a_default_start_in_the_middle():
 
 
 @pytest.mark.parametrize(
-    ("given", "values"),
+    ("positions", "values"),
     [
         ((1, 4), [1, 2, 3, 4]),
         ((0, 1, 0.25), [0, 0.25, 0.5, 0.75, 1]),
@@ -161,8 +162,8 @@ def test_sliders_without_a_default_start_in_the_middle():
         (["hat", "flat"], ["hat", "flat"]),
     ],
 )
-def test_slider_has_the_positions_of_its_range_or_list(given, values):
-    tuner = widgets.tune(lambda a: square(), same, alt="A square", a=given)
+def test_slider_has_the_positions_of_its_range_or_list(positions, values):
+    tuner = widgets.tune(lambda a: square(), same, alt="A square", a=positions)
     at = []
     for k in range(len(tuner.values[0])):
         tuner.at = [k]
@@ -215,15 +216,16 @@ def test_tune_stores_all_positions_for_pages_without_a_kernel_start_first():
     assert sorted(tuner.stored_at) == [[level, side] for level in range(16) for side in range(3)]
     for (level, side), frame in zip(tuner.stored_at, tuner.stored, strict=True):
         picture = iio.imread(io.BytesIO(frame))
-        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(
-            10 * level, abs=1
-        )
+        assert picture.shape[0] == [8, 16, 32][side]
+        assert level_of(frame) == pytest.approx(10 * level, abs=1)
 
 
 def test_tune_stores_an_even_grid_of_many_positions_with_ends_and_start():
     tuner = widgets.tune(square, same, alt="A square", stored=12, level=(0, 255), side=[8, 16, 32])
-    each = [[0, 100, 170, 255], [0, 1, 2]]
-    assert sorted(tuner.stored_at) == [[level, side] for level in each[0] for side in each[1]]
+    positions = [[0, 100, 170, 255], [0, 1, 2]]
+    assert sorted(tuner.stored_at) == [
+        [level, side] for level in positions[0] for side in positions[1]
+    ]
 
 
 def test_stored_positions_of_words_are_thinned_out_last():
@@ -267,7 +269,9 @@ def test_positions_at_which_the_function_fails_are_not_stored():
 
 
 def painted(first, over):
-    """Return the picture that a page shows: one painted over the other, transparent where it is the same."""
+    """Return the image that a page shows: the second one painted over the first, transparent where
+    equal.
+    """
     over = iio.imread(io.BytesIO(over))
     if over.shape[2] == 3:
         return over
@@ -289,7 +293,7 @@ def test_tune_always_stores_the_start():
 
 
 @pytest.mark.parametrize(
-    "given",
+    "positions",
     [
         5,
         "hat",
@@ -306,9 +310,9 @@ def test_tune_always_stores_the_start():
         [1],
     ],
 )
-def test_tune_rejects_bad_ranges(given):
+def test_tune_rejects_bad_ranges(positions):
     with pytest.raises(ValueError, match="level as"):
-        widgets.tune(square, same, alt="A square", level=given)
+        widgets.tune(square, same, alt="A square", level=positions)
 
 
 def test_tune_rejects_no_ranges_and_unknown_parameters():
@@ -380,7 +384,7 @@ def curve(k=1):
 
 
 def test_plot_on_reused_axes_equals_the_plot_on_new_axes():
-    """To the pixel: nothing of the picture before is left behind, whatever it had."""
+    """To the pixel: nothing of the earlier image remains."""
 
     def crowded(k):
         ax = curve(k)
@@ -432,7 +436,8 @@ def test_axes_with_changes_that_wipe_cannot_undo_are_not_reused(change):
 
 
 def test_axes_are_reused_for_the_next_plot():
-    kept, seen = reuse.Kept(), []
+    kept = reuse.Kept()
+    seen = []
     for k in (1, 2, 3):
         reuse.draw_reusing(lambda k: seen.append(curve(k)) or seen[-1], k, lambda drawn: b"", kept)
     assert seen[0] is seen[1] is seen[2] and curve() is not seen[0]
@@ -508,8 +513,8 @@ def test_pictures_of_wipe_and_blink_are_lossless():
         widgets.wipe(ROOM, 255 - ROOM, alt="A room"),
         widgets.blink(ROOM, 255 - ROOM, alt="A room"),
     ):
-        first, second = (iio.imread(io.BytesIO(picture)) for picture in widget.pictures)
-        assert np.array_equal(first, ROOM) and np.array_equal(second, 255 - ROOM)
+        decoded = [iio.imread(io.BytesIO(picture)) for picture in widget.pictures]
+        assert np.array_equal(decoded, [ROOM, 255 - ROOM])
 
 
 def test_wipe_accepts_gray_with_color_and_plots():
@@ -544,7 +549,7 @@ def test_large_pictures_and_values_are_reduced_to_means():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("arguments", "message"),
     [
         ({"b": ROOM[:9]}, r"expected pictures of one size, got \(24, 36\), \(9, 36\)"),
         ({"labels": ["one"]}, "expected a label for each of 2 pictures"),
@@ -561,10 +566,12 @@ def test_large_pictures_and_values_are_reduced_to_means():
     ],
 )
 @pytest.mark.parametrize("compare", [widgets.wipe, widgets.blink])
-def test_wipe_and_blink_reject_pictures_labels_or_values_that_do_not_fit(compare, given, message):
-    given = {"a": ROOM, "b": ROOM, "alt": "A room"} | given
+def test_wipe_and_blink_reject_pictures_labels_or_values_that_do_not_fit(
+    compare, arguments, message
+):
+    arguments = {"a": ROOM, "b": ROOM, "alt": "A room"} | arguments
     with pytest.raises(ValueError, match=message):
-        compare(given.pop("a"), given.pop("b"), **given)
+        compare(arguments.pop("a"), arguments.pop("b"), **arguments)
 
 
 @pytest.mark.parametrize("period", [0.1, np.nan, np.inf])
@@ -587,7 +594,7 @@ def test_brush_reduces_a_large_map_to_means():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("arguments", "message"),
     [
         ({"alt": " "}, "expected an alt text"),
         ({"size": 63}, "expected size from 64 to 512, got 63"),
@@ -597,14 +604,14 @@ def test_brush_reduces_a_large_map_to_means():
         ({"E": -np.ones((9, 9))}, "expected"),
     ],
 )
-def test_brush_rejects_parameters_out_of_range_and_bad_maps(given, message):
-    given = {"E": np.ones((9, 9)), "alt": "A wall"} | given
+def test_brush_rejects_parameters_out_of_range_and_bad_maps(arguments, message):
+    arguments = {"E": np.ones((9, 9)), "alt": "A wall"} | arguments
     with pytest.raises(ValueError, match=message):
-        widgets.brush(given.pop("E"), **given)
+        widgets.brush(arguments.pop("E"), **arguments)
 
 
 def test_tune_uses_one_blas_thread_if_more_are_enabled():
-    """Whoever starts JupyterLab without telling the linear algebra still gets an answer at once."""
+    """The widget answers at once, even if JupyterLab was started without limits on BLAS threads."""
     seen = []
 
     def f(k=1):
@@ -636,7 +643,7 @@ def test_garbage_collector_is_paused_during_an_answer():
 
 
 def fixed(k):
-    """Draw a curve on axes that stay as they are, under a legend and a title of two lines."""
+    """Draw a curve on axes that do not change, with a legend and a title of two lines."""
     ax = plots.response(np.arange(256) * (k + 1) / 100, span=(0, 8), label=f"number {k}")
     ax.annotate("here", (k, 40 * k))
     ax.set_title(f"number {k}\nof some, gently", fontsize=9 + k)
@@ -644,7 +651,7 @@ def fixed(k):
 
 
 def running(k):
-    """Draw on axes whose ends, scales and colours change."""
+    """Draw on axes whose limits, scales and colors change."""
     ax = plots.axes()
     ax.plot([1, 10 + 100 * k], [1, 2 + k])
     ax.set(
@@ -656,7 +663,7 @@ def running(k):
 
 
 def beneath(k):
-    """Draw a picture, which lies under the grid."""
+    """Draw an image, which is below the grid."""
     ax = plots.axes()
     ax.imshow(np.full((4, 4), k), vmin=0, vmax=4, aspect="auto")
     return ax
@@ -671,7 +678,7 @@ def bare(k):
 
 
 def mapped(k):
-    """Draw two maps under names of their own, above a scale that changes at last."""
+    """Draw two named maps above a scale that changes in the last frame."""
     v = np.sin(np.arange(600.0).reshape(20, 30) / (k + 9))
     return tones.maps({f"number {k}": v, "": -v}, label="sines", span=(-1, 1 + k // 2))
 
@@ -686,7 +693,7 @@ def named(k):
 
 
 def covering(k):
-    """Draw lines that a legend covers in part, the same twice and then other ones."""
+    """Draw lines that a legend partly covers, the same ones twice and then others."""
     ax = plots.response(np.arange(256) / 100 - k // 2, span=(-2, 3), label="g", ax=plots.axes())
     ax.plot([-2, 3], [200 + k // 2, 0], "s:", label="a line")
     ax.axvspan(-1, k // 2, alpha=0.3, label="an area")
@@ -694,7 +701,7 @@ def covering(k):
 
 
 def renamed(k):
-    """Draw one line that is told about in other words, by another marker, and at another place."""
+    """Draw one line with another label, another marker, and at another place."""
     ax = plots.axes()
     ax.plot([0, 1], [0, 1], "osD"[k % 3], label=f"line {k // 2}")
     ax.legend(loc=k % 2 + 1, title="what it is", fontsize=8 + k, labelcolor=["red", "blue"][k % 2])
@@ -744,7 +751,8 @@ SHOWN = {"play": [20], "tune": [100], "wipe": [20, 200], "blink": [20, 100, 200]
 @pytest.mark.papers
 @pytest.mark.parametrize("name", STILLS)
 def test_saved_notebook_without_widget_models_shows_still_pictures_with_alt_texts(name):
-    nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
+    nbformat = pytest.importorskip("nbformat")
+    nbconvert = pytest.importorskip("nbconvert")
     data, metadata = STILLS[name]()._repr_mimebundle_()
     output = nbformat.v4.new_output("display_data", data=data, metadata=metadata)
     notebook = nbformat.v4.new_notebook(
@@ -765,9 +773,10 @@ def test_plain_text_of_a_widget_is_its_alt_text(name):
 
 @pytest.mark.papers
 def test_still_pictures_mark_plots_for_dark_pages():
-    plot, photograph = widgets.play([1], curve, alt="A"), widgets.play([1], square, alt="A")
+    plot = widgets.play([1], curve, alt="A")
+    photograph = widgets.play([1], square, alt="A")
     assert [
-        "data-ink" in one._repr_mimebundle_()[0]["text/html"] for one in (plot, photograph)
+        "data-ink" in widget._repr_mimebundle_()[0]["text/html"] for widget in (plot, photograph)
     ] == [
         True,
         False,
@@ -845,7 +854,8 @@ def test_a_zone_scale_falls_back_to_a_picture_with_alt_text():
 
 
 def test_a_gain_screen_rejects_what_it_cannot_show():
-    base, g = np.full((4, 6, 3), 90, np.uint8), np.ones((4, 6, 3))
+    base = np.full((4, 6, 3), 90, np.uint8)
+    g = np.ones((4, 6, 3))
     wrong = ({"base": base[1:]}, {"base": base / 255}, {"g": 2 * g}, {"headroom": 1.0}, {"alt": ""})
     for changed in (*wrong, {"screen": 0.5}):
         arguments = {"base": base, "g": g, "low": [0] * 3, "high": [2] * 3, "alt": "Gray"} | changed
@@ -854,7 +864,8 @@ def test_a_gain_screen_rejects_what_it_cannot_show():
 
 
 def test_a_gain_screen_falls_back_to_a_picture_with_alt_text():
-    base, g = np.full((4, 6, 3), 90, np.uint8), np.ones((4, 6, 3))
+    base = np.full((4, 6, 3), 90, np.uint8)
+    g = np.ones((4, 6, 3))
     figure = widgets.gain_screen(base, g, [0] * 3, [2] * 3, alt="A gray wall")
     html, text = figure.fallback()
     assert "<img" in html and 'alt="A gray wall"' in html and text == "A gray wall"
