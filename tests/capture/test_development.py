@@ -35,7 +35,9 @@ def in_neutral_light(place, shape=(192, 288)):
 
 
 def photograph(E, pattern, *, seed=0, full=1.0):
-    """Return RAW levels (H, W) of linear sRGB by a Canon; gray of E = 1 brings green to `full`."""
+    """Return the RAW levels (H, W) of linear sRGB in a Canon camera; gray of E = 1 reaches `full` in
+    green.
+    """
     camera = np.maximum(E @ CANON_OF_SRGB.T / CANON_OF_SRGB.sum(axis=1).max(), 0)
     X = mosaic.sample(camera, mosaic.tile(pattern, E.shape[:2]))
     exposure = np.float32(full * (FULL_LEVEL - 512) * SENSOR.gain / SENSOR.full_well) * X

@@ -6,7 +6,8 @@ from hypothesis import given, strategies as st
 
 from hdrlab.capture import exposure
 
-TIMES, NUMBERS = st.floats(1e-4, 60), st.floats(0.7, 64)
+TIMES = st.floats(1e-4, 60)
+NUMBERS = st.floats(0.7, 64)
 
 
 @given(F=NUMBERS, T=TIMES)
@@ -42,8 +43,8 @@ def test_a_shutter_marked_so_opens_for_a_power_of_two(name, really):
 @pytest.mark.parametrize("per_stop", [1, 3])
 def test_the_names_of_a_dial_are_within_seven_percent_of_what_it_does(per_stop):
     dial = exposure.shutter_series(per_stop)
-    said = np.array([exposure.seconds(name) for name in dial.names])
-    assert len(said) == len(dial.values) and np.abs(said / dial.values - 1).max() < 0.07
+    seconds = np.array([exposure.seconds(name) for name in dial.names])
+    assert len(seconds) == len(dial.values) and np.abs(seconds / dial.values - 1).max() < 0.07
 
 
 @pytest.mark.parametrize("per_stop", [1, 3])
@@ -66,7 +67,9 @@ def test_a_filter_of_density_0_3_takes_a_stop_and_1000_times_takes_ten():
 
 
 def test_a_sunlit_white_wall_fills_the_levels_near_the_sunny_sixteen_rule():
-    """f/16 and 1 / ISO seconds suit a sunlit scene: its white, 30 000 cd/m^2, is then just below the top."""
+    """f/16 and 1 / ISO seconds suit a sunlit scene: its white, 30 000 cd/m^2, is just below the top
+    level.
+    """
     assert exposure.saturating_luminance(1 / 128, F=16, S=100) == pytest.approx(39322, rel=0.01)
 
 
@@ -91,7 +94,10 @@ def test_settings_must_be_positive(bad):
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 0.75])
 def test_the_irradiance_is_all_that_a_small_aperture_sends_to_a_spot_of_the_sensor(angle):
-    h, d, n = 50.0, 50 / 16, 401  # mm
+    # mm
+    h = 50.0
+    d = 50 / 16
+    n = 401
     x = (np.arange(n) + 0.5) / n * d - d / 2
     inside = np.hypot(x[:, None], x) < d / 2
     square = (

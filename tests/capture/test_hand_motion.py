@@ -47,7 +47,7 @@ def test_a_moved_camera_sees_the_scene_between_its_pixels(waves, E, name):
 
 
 def best_corner(waves, still):
-    """Return (left, top) of a view that was not resampled, found by trying."""
+    """Return the (left, top) that fits a view best, by trying all positions without resampling."""
     y, x = np.indices(still.shape)
     tries = [(left, top) for left in range(40) for top in range(40)]
     return min(tries, key=lambda at: np.abs(still - waves(x + at[0], y + at[1])).max())
@@ -55,12 +55,12 @@ def best_corner(waves, still):
 
 def test_shifts_written_as_homographies_cut_the_same_views_as_offsets(E):
     offsets = [[3, -4], [0, 0], [-6, 9]]
-    for one, other in zip(
+    for by_shift, by_homography in zip(
         hand_motion.views(E, offsets),
         hand_motion.views(E, warp.as_homographies(offsets)),
         strict=True,
     ):
-        assert np.allclose(one, other, atol=1e-6)
+        assert np.allclose(by_shift, by_homography, atol=1e-6)
     assert camera.views is hand_motion.views
 
 
@@ -110,8 +110,8 @@ def test_resampled_light_stays_between_the_light_around_it(seed):
     rng = np.random.default_rng(seed)
     E = 10.0 ** rng.uniform(-3, 4, (30, 40))
     H = warp.turn(E.shape, rng.uniform(-9, 9), rng.uniform(-1, 1, 2))
-    found = warp.sample(E, H, E.shape)
-    assert found.min() >= np.float32(E.min()) and found.max() <= np.float32(E.max())
+    resampled = warp.sample(E, H, E.shape)
+    assert resampled.min() >= np.float32(E.min()) and resampled.max() <= np.float32(E.max())
     assert np.allclose(warp.sample(np.full((30, 40), 3.7), H, (20, 20)), 3.7)
 
 
@@ -164,7 +164,7 @@ def test_corner_distance_is_that_of_the_worst_corner():
 
 
 @pytest.mark.parametrize(
-    ("moves", "said"),
+    ("moves", "message"),
     [
         ([[0, 0, 0]], "expected finite homographies"),
         ([[np.nan, 0]], "expected finite homographies"),
@@ -176,8 +176,8 @@ def test_corner_distance_is_that_of_the_worst_corner():
         ([[0, 0], [0, 500]], "with which the images overlap"),
     ],
 )
-def test_invalid_homographies_raise_an_error(moves, said):
-    with pytest.raises(ValueError, match=said):
+def test_invalid_homographies_raise_an_error(moves, message):
+    with pytest.raises(ValueError, match=message):
         warp.common_rectangle(moves, SHAPE)
 
 

@@ -15,7 +15,7 @@ SCENES = {name: make((96, 144)) for name, make in subjects.SUBJECTS.items()}
 
 
 def settled(name, mode, **knobs):
-    """Return by how many stops the subject comes out too bright, as `mode` exposes it."""
+    """Return how many stops too bright the subject is when `mode` sets the exposure."""
     scene = SCENES[name]
     EV = autoexposure.expose(scene.E, mode, **knobs)
     B = luminance(scene.E) / exposure.saturating_luminance(64 / 2**EV)
@@ -45,9 +45,8 @@ def test_centre_gives_its_share_of_the_weight_to_the_central_quarter(inside):
     assert np.sort(w.ravel())[::-1][: w.size // 4].sum() >= inside - 0.005
     assert w[metering.spot(SHAPE, share=0.25) > 0].sum() == pytest.approx(inside, abs=1e-3)
     row = w[40, 60:]
-    assert (
-        np.all(np.diff(row) < 0) and row[-1] > 0
-    )  # feathered: it falls all the way, and never to nothing
+    assert np.all(np.diff(row) < 0)
+    assert row[-1] > 0  # feathered: it falls all the way, and never to nothing
 
 
 def test_the_spot_can_be_placed_anywhere():
@@ -77,13 +76,15 @@ def test_a_matrix_meter_gives_the_bare_sun_little_weight():
 def test_a_matrix_meter_gives_the_focus_point_more_weight():
     B = np.full(SHAPE, 0.1)
     B[:, 60:] = 0.3
-    left, right = (metering.reading(B, metering.matrix(B, at=(0.5, x))) for x in (0.2, 0.8))
+    left = metering.reading(B, metering.matrix(B, at=(0.5, 0.2)))
+    right = metering.reading(B, metering.matrix(B, at=(0.5, 0.8)))
     assert left < 0.15 < 0.25 < right
 
 
 def test_without_full_pixels_the_correction_is_the_formula():
     rng = np.random.default_rng(1)
-    B, w = rng.uniform(0.01, 0.09, SHAPE), metering.average(SHAPE)
+    B = rng.uniform(0.01, 0.09, SHAPE)
+    w = metering.average(SHAPE)
     formula = metering.optimum(0.0, metering.reading(B, w))
     assert -metering.correction(B, w) == pytest.approx(formula, abs=1e-6)
 
@@ -92,7 +93,7 @@ def test_without_full_pixels_the_correction_is_the_formula():
 @pytest.mark.parametrize("mode", metering.MODES)
 @pytest.mark.parametrize("name", SCENES)
 def test_automatic_exposure_is_within_a_sixth_of_a_stop_after_at_most_four_shots(name, mode, start):
-    """Where it ends, the reading of a photograph without noise is 0.18, to a sixth of a stop."""
+    """At the end, a photo without noise has a reading of 0.18 within a sixth of a stop."""
     photograph = partial(autoexposure.measure_brightness, full_well=20_000, read_noise=5, rng=3)
     states = list(
         autoexposure.expose_steps(SCENES[name].E, mode, start=start, photograph=photograph)
@@ -161,7 +162,7 @@ def test_each_metering_scene_has_a_subject_of_known_reflectance(name):
 
 
 def test_the_center_weights_are_gaussian_and_never_0():
-    """The logarithm of its weights falls by the square of the distance, in the core as outside of it."""
+    """The logarithm of the weights decreases with the squared distance, inside and outside of the core."""
     w = metering.centre((61, 61))
     away = (np.arange(61) - 30.0) ** 2
     slope = np.diff(np.log(w[30])) / np.where(np.diff(away), np.diff(away), np.nan)

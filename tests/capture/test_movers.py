@@ -14,14 +14,13 @@ TIMES = [0.125, 0.5, 2.0]
 
 def test_compose_moment_puts_the_figure_in_front_of_the_scene():
     E, mask = movers.compose_moment(WALL, BALL, (3, -10))
-    assert np.array_equal(E[mask == 0], WALL[mask == 0]) and np.allclose(
-        E[mask == 1], shifted(BALL.light)[mask == 1]
-    )
+    assert np.array_equal(E[mask == 0], WALL[mask == 0])
+    assert np.allclose(E[mask == 1], shifted(BALL.light)[mask == 1])
     assert np.allclose(E, shifted(BALL.light) + (1 - shifted(BALL.mask)[..., None]) * WALL)
 
 
 def shifted(layer):
-    """Return a layer 3 down and 10 to the left, by np.roll: the ball is far from every edge."""
+    """Return a layer moved 3 down and 10 to the left by np.roll; the ball is far from every edge."""
     return np.roll(layer, (3, -10), axis=(0, 1))
 
 
@@ -47,7 +46,7 @@ def test_each_photo_shows_its_moment_and_the_truth_is_sorted_alike():
         assert np.array_equal(
             image, camera.shoot(seen, t, camera.Camera(response="linear")).images[0]
         )
-    left = [np.flatnonzero(one.any(axis=0))[0] for one in taken.hidden]
+    left = [np.flatnonzero(mask.any(axis=0))[0] for mask in taken.hidden]
     assert np.diff(left).tolist() == [-12, -12]  # the longest exposure was given first
 
 
@@ -55,7 +54,7 @@ def test_outside_the_region_every_moment_is_the_still_scene():
     taken = movers.shoot(WALL, BALL, movers.path(3, (4, 9)), TIMES)
     assert np.array_equal(taken.still, WALL)
     assert np.all(taken.moments[:, ~taken.region] == WALL[~taken.region])
-    assert all(np.any(one != WALL) for one in taken.moments)
+    assert all(np.any(moment != WALL) for moment in taken.moments)
 
 
 def test_photos_of_equal_times_keep_their_own_truth():
@@ -90,7 +89,7 @@ def test_a_path_has_equal_steps_and_is_centered_on_the_middle_frame():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"figure": movers.Figure(BALL.light[:9], BALL.mask)}, "light"),
         ({"figure": movers.Figure(BALL.light, 2 * BALL.mask)}, "mask from 0 to 1"),
@@ -101,10 +100,10 @@ def test_a_path_has_equal_steps_and_is_centered_on_the_middle_frame():
         ({"model": camera.Camera(hot=0.01)}, "hot"),
     ],
 )
-def test_invalid_figures_and_places_raise_an_error(wrong, said):
-    given = {"E": WALL, "figure": BALL, "at": movers.path(3, (0, 9)), "times": TIMES} | wrong
-    with pytest.raises(ValueError, match=said):
-        movers.shoot(**given)
+def test_invalid_figures_and_places_raise_an_error(wrong, message):
+    arguments = {"E": WALL, "figure": BALL, "at": movers.path(3, (0, 9)), "times": TIMES} | wrong
+    with pytest.raises(ValueError, match=message):
+        movers.shoot(**arguments)
 
 
 @pytest.mark.parametrize(

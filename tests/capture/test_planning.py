@@ -23,9 +23,8 @@ def test_the_plan_covers_every_luminance_and_neighbors_overlap(
 ):
     high = low * 2**scene
     plan = planning.plan(low, high, usable=usable, overlap=overlap, per_stop=per_stop)
-    assert plan.holds[:, 0].min() <= low * (1 + 1e-6) and plan.holds[:, 1].max() >= high * (
-        1 - 1e-6
-    )
+    assert plan.holds[:, 0].min() <= low * (1 + 1e-6)
+    assert plan.holds[:, 1].max() >= high * (1 - 1e-6)
     shared = np.log2(plan.holds[1:, 1] / plan.holds[:-1, 0])
     assert np.all(shared >= overlap - 1e-6)
 
@@ -53,7 +52,8 @@ def test_the_shortest_exposure_just_holds_the_brightest_luminance():
 
 
 def test_four_times_the_speed_takes_a_quarter_of_the_time():
-    slow, fast = planning.plan(0.01, 1000), planning.plan(0.01, 1000, iso=400)
+    slow = planning.plan(0.01, 1000)
+    fast = planning.plan(0.01, 1000, iso=400)
     assert fast.times == pytest.approx(slow.times / 4)
 
 
@@ -85,18 +85,18 @@ def test_planning_by_noise_reaches_the_requested_snr_at_each_luminance(maker, lo
     assert every.min() >= snr**2 * (1 - 1e-6)
     worst = planning.worst_snr(low, high, times, speeds, maker)
     assert snr * (1 - 1e-6) <= worst <= np.sqrt(every.min()) * (1 + 1e-6)
-    assert (
-        len(names) == len(times)
-        and np.all(np.diff(times) >= 0)
-        and set(speeds) <= set(maker.speeds)
-    )
+    assert len(names) == len(times)
+    assert np.all(np.diff(times) >= 0)
+    assert set(speeds) <= set(maker.speeds)
 
 
 @pytest.mark.parametrize("maker", MAKERS[1:])
 def test_planning_by_noise_finds_the_quickest_three_photos(maker):
-    low, high, snr = 5.0, 200.0, 12.0
-    found = planning.plan_by_noise(low, high, snr, maker)
-    took = found.times.sum() + maker.pause * len(found.times)
+    low = 5.0
+    high = 200.0
+    snr = 12.0
+    plan = planning.plan_by_noise(low, high, snr, maker)
+    took = plan.times.sum() + maker.pause * len(plan.times)
     settings = [(t, S) for t in 2.0 ** np.arange(-12, 5) for S in maker.speeds]
     quickest = np.inf
     for count in (1, 2, 3):
@@ -109,16 +109,18 @@ def test_planning_by_noise_finds_the_quickest_three_photos(maker):
 
 
 def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
-    L, maker = 2.0, planning.Model()
+    L = 2.0
+    maker = planning.Model()
     _, times, speeds = planning.plan_by_noise(1, 50, 15, maker)
     full = exposure.saturating_luminance(times, S=speeds)
-    X, rng = np.broadcast_to((L / full)[:, None], (len(times), 20_000)), np.random.default_rng(3)
+    X = np.broadcast_to((L / full)[:, None], (len(times), 20_000))
+    rng = np.random.default_rng(3)
     counted = rng.poisson(X * maker.full_well) + maker.read_noise * rng.standard_normal(X.shape)
     step = np.full(X.shape, maker.gain / maker.full_well)
     light = step * np.round(counted / maker.full_well / step)
     E, _ = inverse_variance_merge(light, step, X < 1, times, maker.full_well, maker.read_noise)
-    said = np.sqrt(planning.squared_snr([L], times, speeds, maker).sum())
-    assert E.mean() / E.std() == pytest.approx(said, rel=0.03)
+    ratio = np.sqrt(planning.squared_snr([L], times, speeds, maker).sum())
+    assert E.mean() / E.std() == pytest.approx(ratio, rel=0.03)
 
 
 @pytest.mark.parametrize(

@@ -12,12 +12,14 @@ from hdrlab.errors import InputError
 QUIET = Sensor(read_noise=0, full_well=1e9, gain=1e9 / 4000, bits=12, black=64)
 
 
-def flats(one, count=14, *, side=200, seed=0, uneven=None):
-    """Return pairs (M, 2, side, side) of RAW levels: dark, and of a white wall up to beyond full."""
+def flats(device, count=14, *, side=200, seed=0, uneven=None):
+    """Return pairs (M, 2, side, side) of RAW levels: dark ones, and of a white wall until it is
+    clipped.
+    """
     wall = np.ones((side, side)) if uneven is None else uneven
     rng = np.random.default_rng(seed)
     times = np.r_[0, np.linspace(0.05, 1.3, count)]
-    return np.stack([[sensor.raw(wall, t, one, rng=rng) for _ in range(2)] for t in times])
+    return np.stack([[sensor.raw(wall, t, device, rng=rng) for _ in range(2)] for t in times])
 
 
 # Dynamic range
@@ -35,12 +37,14 @@ def test_each_doubling_of_the_brightest_adds_a_stop(low, k):
 
 
 def test_the_range_of_a_sensor_is_its_well_over_its_noise():
-    one = Sensor(full_well=20_000, read_noise=2, gain=1e-9 + 20_000 / 65_000, bits=16, black=0)
-    assert ranges.sensor_range(one).decades == pytest.approx(4, abs=1e-3)
+    device = Sensor(full_well=20_000, read_noise=2, gain=1e-9 + 20_000 / 65_000, bits=16, black=0)
+    assert ranges.sensor_range(device).decades == pytest.approx(4, abs=1e-3)
 
 
 def test_the_range_is_largest_at_an_intermediate_gain():
-    high, base, low = (ranges.sensor_range(Sensor(gain=K)).stops for K in (40, 5, 1))
+    high = ranges.sensor_range(Sensor(gain=40)).stops
+    base = ranges.sensor_range(Sensor(gain=5)).stops
+    low = ranges.sensor_range(Sensor(gain=1)).stops
     assert high < base and low < base
     assert (
         sensor.full_electrons(Sensor(gain=1))
@@ -54,7 +58,8 @@ def test_the_range_is_largest_at_an_intermediate_gain():
 
 
 def test_half_of_the_levels_are_in_the_brightest_stop_and_12_bits_have_16_times_as_many_as_8():
-    eight, twelve = ranges.levels_per_stop(8), ranges.levels_per_stop(12)
+    eight = ranges.levels_per_stop(8)
+    twelve = ranges.levels_per_stop(12)
     assert eight[0] == 128 and eight.sum() == 255 and twelve.sum() == 4095
     assert np.array_equal(twelve[:8], 16 * eight)
 
@@ -63,17 +68,17 @@ def test_each_bit_halves_the_rounding_error():
     X = np.random.default_rng(0).random((400, 500)).astype(np.float32)
     rms = {}
     for bits in (8, 12):
-        one = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
-        rms[bits] = np.std(sensor.develop(sensor.digitise(X * 1e9, one), one) - X)
+        device = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
+        rms[bits] = np.std(sensor.develop(sensor.digitise(X * 1e9, device), device) - X)
         assert rms[bits] == pytest.approx(1 / (2**bits - 1) / np.sqrt(12), rel=0.01)
     assert rms[8] / rms[12] == pytest.approx(4095 / 255, rel=0.01)
 
 
 def test_a_ramp_has_256_levels_with_8_bits_and_4096_with_12():
     for bits in (8, 12):
-        one = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
+        device = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
         assert (
-            len(np.unique(sensor.digitise(np.linspace(0, 1e9, 50_000, dtype=np.float32), one)))
+            len(np.unique(sensor.digitise(np.linspace(0, 1e9, 50_000, dtype=np.float32), device)))
             == 2**bits
         )
 
@@ -82,9 +87,9 @@ def test_without_a_black_level_the_dark_is_too_bright():
     dark = np.zeros((300, 300), np.float32)
     means = {}
     for black in (0, 64):
-        one = Sensor(read_noise=10, gain=2, black=black)
-        Z = sensor.raw(dark, 1.0, one)
-        means[black] = (Z.astype(float) - black).mean() * one.gain
+        device = Sensor(read_noise=10, gain=2, black=black)
+        Z = sensor.raw(dark, 1.0, device)
+        means[black] = (Z.astype(float) - black).mean() * device.gain
     assert abs(means[64]) < 0.2
     assert means[0] == pytest.approx(
         10 / np.sqrt(2 * np.pi), rel=0.1
@@ -93,8 +98,8 @@ def test_without_a_black_level_the_dark_is_too_bright():
 
 @given(K=st.floats(0.5, 50), N=st.integers(0, 15_000))
 def test_electrons_can_be_computed_from_levels_within_half_a_level(K, N):
-    one = Sensor(gain=K, bits=16, black=100)
-    Z = sensor.digitise(np.array([[N]], np.float32), one)
+    device = Sensor(gain=K, bits=16, black=100)
+    Z = sensor.digitise(np.array([[N]], np.float32), device)
     assert abs(K * (float(Z[0, 0]) - 100) - N) <= K / 2 + 1e-2
 
 
@@ -105,29 +110,31 @@ def test_a_longer_exposure_covers_the_same_range_of_darker_luminances():
     L = np.geomspace(1e-4, 1e4, 8001)
     ends = []
     for time in (0.01, 0.16):
-        kept = L[~(held := ranges.expose_levels(L, time, Sensor())).full & ~held.noise]
+        exposed = ranges.expose_levels(L, time, Sensor())
+        kept = L[~exposed.full & ~exposed.noise]
         ends.append((kept[0], kept[-1]))
     (low_1, high_1), (low_2, high_2) = ends
-    assert high_1 / high_2 == pytest.approx(16, rel=0.01) and low_1 / low_2 == pytest.approx(
-        16, rel=0.01
-    )
+    assert high_1 / high_2 == pytest.approx(16, rel=0.01)
+    assert low_1 / low_2 == pytest.approx(16, rel=0.01)
 
 
 def test_high_exposure_loses_the_highlights_and_low_exposure_the_shadows():
     L = np.geomspace(0.01, 10, 301)
     coarse = Sensor(bits=3, gain=20_000 / 7, black=0)  # eight levels, as in the overview's figures
-    long, short = ranges.expose_levels(L, 1.0, coarse), ranges.expose_levels(L, 0.1, coarse)
+    long = ranges.expose_levels(L, 1.0, coarse)
+    short = ranges.expose_levels(L, 0.1, coarse)
     assert long.full.mean() > 0.3 and not short.full[:-1].any()
     assert short.noise.mean() > 2 * long.noise.mean()
-    fine, wide = (np.flatnonzero(np.diff(held.Z))[:3] for held in (long, short))
+    fine = np.flatnonzero(np.diff(long.Z))[:3]
+    wide = np.flatnonzero(np.diff(short.Z))[:3]
     assert np.all(L[fine] < L[wide] / 9)  # the same levels lie ten times as close to the dark
 
 
 def test_the_signal_over_noise_is_that_of_many_photographs():
-    one = Sensor()
+    device = Sensor()
     for X in (0.001, 0.05, 0.6):
-        Z = sensor.raw(np.full((300, 300), X), 1.0, one).astype(float) - one.black
-        assert Z.mean() / Z.std() == pytest.approx(float(ranges.snr(X, one)), rel=0.02)
+        Z = sensor.raw(np.full((300, 300), X), 1.0, device).astype(float) - device.black
+        assert Z.mean() / Z.std() == pytest.approx(float(ranges.snr(X, device)), rel=0.02)
 
 
 # The picture
@@ -152,9 +159,8 @@ def test_white_balance_makes_a_gray_card_gray_and_keeps_full_pixels_white():
 
 def test_a_bayer_camera_shows_an_even_wall_as_one_that_reads_all_colours_does():
     E = np.ones((20, 30, 3)) * [0.2, 0.4, 0.1]
-    whole, mosaicked = (
-        camera.shoot(E, [1.0], camera.Camera(sensor=QUIET, bayer=bayer)) for bayer in (False, True)
-    )
+    whole = camera.shoot(E, [1.0], camera.Camera(sensor=QUIET, bayer=False))
+    mosaicked = camera.shoot(E, [1.0], camera.Camera(sensor=QUIET, bayer=True))
     assert np.abs(whole.images.astype(int) - mosaicked.images).max() <= 1
 
 
@@ -179,7 +185,7 @@ def test_hot_pixels_burn_through_a_mosaic_too():
 
 
 @pytest.mark.parametrize(
-    "one",
+    "device",
     [
         Sensor(),
         Sensor(full_well=5_000, read_noise=2, gain=1.2, bits=14, black=512),
@@ -187,28 +193,28 @@ def test_hot_pixels_burn_through_a_mosaic_too():
     ],
 )
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
-    found = photon_transfer.calibrate(flats(one, seed=seed))
-    assert found.gain == pytest.approx(one.gain, rel=0.03)
-    assert found.read_noise == pytest.approx(one.read_noise, rel=0.03)
-    assert found.black == pytest.approx(one.black, abs=0.1)
-    assert found.full_well == pytest.approx(sensor.full_electrons(one), rel=0.03)
+def test_flat_frames_give_gain_and_read_noise_to_three_percent(device, seed):
+    calibrated = photon_transfer.calibrate(flats(device, seed=seed))
+    assert calibrated.gain == pytest.approx(device.gain, rel=0.03)
+    assert calibrated.read_noise == pytest.approx(device.read_noise, rel=0.03)
+    assert calibrated.black == pytest.approx(device.black, abs=0.1)
+    assert calibrated.full_well == pytest.approx(sensor.full_electrons(device), rel=0.03)
 
 
 def test_dust_and_vignetting_do_not_disturb_the_calibration():
     dusty = sensor.falloff((200, 200), 0.3) * np.random.default_rng(8).normal(1, 0.03, (200, 200))
-    found = photon_transfer.calibrate(flats(Sensor(), uneven=dusty))
-    assert found.gain == pytest.approx(5, rel=0.03) and found.read_noise == pytest.approx(
-        5, rel=0.03
-    )
+    calibrated = photon_transfer.calibrate(flats(Sensor(), uneven=dusty))
+    assert calibrated.gain == pytest.approx(5, rel=0.03)
+    assert calibrated.read_noise == pytest.approx(5, rel=0.03)
     single = flats(Sensor(), uneven=dusty)[8, 0].astype(float).var()
-    assert single > 5 * found.V[8]  # one photograph's own variance is mostly dust
+    assert single > 5 * calibrated.V[8]  # one photograph's own variance is mostly dust
 
 
 def test_the_variance_grows_with_the_signal_and_falls_when_the_well_is_full():
-    found = photon_transfer.calibrate(flats(Sensor()))
-    assert np.all(np.diff(found.V[found.used]) > 0) and found.V[-1] < found.V[found.used][-1] / 10
-    assert not found.used[-1]
+    calibrated = photon_transfer.calibrate(flats(Sensor()))
+    assert np.all(np.diff(calibrated.V[calibrated.used]) > 0)
+    assert calibrated.V[-1] < calibrated.V[calibrated.used][-1] / 10
+    assert not calibrated.used[-1]
 
 
 def test_photon_transfer_raises_an_error_for_jpegs_whose_noise_does_not_grow():
@@ -219,7 +225,7 @@ def test_photon_transfer_raises_an_error_for_jpegs_whose_noise_does_not_grow():
 
 
 def counted_wall(gain, read_noise, black, *, seed=0):
-    """Return pairs (M, 2, 200, 200) of RAW levels of an even wall, cut off at 0."""
+    """Return pairs (M, 2, 200, 200) of RAW levels of a uniform wall, clipped at 0."""
     rng = np.random.default_rng(seed)
     electrons = np.linspace(0, 20_000, 10)[:, None, None, None] * np.ones((10, 2, 200, 200))
     noisy = rng.poisson(electrons) + rng.normal(0, read_noise, electrons.shape)
@@ -229,19 +235,19 @@ def counted_wall(gain, read_noise, black, *, seed=0):
 @pytest.mark.parametrize("black", [100.0, 100.3, 100.5])
 def test_read_noise_below_half_a_level_is_an_interval_and_no_number(black):
     """12 bits at base ISO: the dark pair's variance depends on where black lies in a level."""
-    found = photon_transfer.calibrate(counted_wall(10, 2, black))
-    low, high = found.read_noise_interval
-    assert np.isnan(found.read_noise)
+    calibrated = photon_transfer.calibrate(counted_wall(10, 2, black))
+    low, high = calibrated.read_noise_interval
+    assert np.isnan(calibrated.read_noise)
     assert low <= 2 <= high <= 5.1
-    assert found.gain == pytest.approx(10, rel=0.02)
+    assert calibrated.gain == pytest.approx(10, rel=0.02)
 
 
 @pytest.mark.parametrize("read_noise", [6, 20])
 def test_black_at_level_0_changes_neither_read_noise_nor_gain(read_noise):
-    found = photon_transfer.calibrate(counted_wall(2, read_noise, 0))
-    assert found.read_noise == pytest.approx(read_noise, rel=0.03)
-    assert found.gain == pytest.approx(2, rel=0.01)
-    assert found.black == pytest.approx(0, abs=0.1)
+    calibrated = photon_transfer.calibrate(counted_wall(2, read_noise, 0))
+    assert calibrated.read_noise == pytest.approx(read_noise, rel=0.03)
+    assert calibrated.gain == pytest.approx(2, rel=0.01)
+    assert calibrated.black == pytest.approx(0, abs=0.1)
 
 
 @pytest.mark.papers
@@ -273,7 +279,7 @@ def test_photon_transfer_raises_an_error_for_unusable_photos(Z):
 
 
 @pytest.mark.parametrize(
-    ("knobs", "said"),
+    ("knobs", "message"),
     [
         (dict(vignetting=1.5), "vignetting"),
         (dict(bayer=True), "expected a sensor"),
@@ -287,9 +293,9 @@ def test_photon_transfer_raises_an_error_for_unusable_photos(Z):
         (dict(sensor=Sensor(), E=np.ones((4, 4)), bayer=True), "radiance"),
     ],
 )
-def test_an_invalid_sensor_raises_an_error_that_names_the_value(knobs, said):
+def test_an_invalid_sensor_raises_an_error_that_names_the_value(knobs, message):
     E = knobs.pop("E", np.ones((4, 4, 3)))
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         camera.shoot(E, [1.0], camera.Camera(**knobs))
 
 
@@ -322,8 +328,8 @@ def test_digitise_clips_to_the_levels_of_the_converter():
 
 def test_an_exposure_that_just_fills_the_sensor_counts_as_full():
     full = Sensor(full_well=1000, gain=1, bits=12, black=0, read_noise=1)
-    found = ranges.expose_levels([0.5, 1.0, 2.0], 1.0, full)
-    assert found.full.tolist() == [False, True, True]
+    exposed = ranges.expose_levels([0.5, 1.0, 2.0], 1.0, full)
+    assert exposed.full.tolist() == [False, True, True]
 
 
 @pytest.mark.parametrize("sensitivity", [0, -1, np.inf, np.nan])
