@@ -17,13 +17,13 @@ FOUR = mosaic.tile(assorted.FOUR_EXPOSURES, SHAPE)
 
 
 def error(L, e, *, sigma=0.5, seed=0):
-    """Return the relative RMS error of an even surface L."""
+    """Return the relative RMS error of a uniform surface of luminance L."""
     Z = assorted.shoot(np.full(SHAPE, L), e, bits=16, rng=seed, **WELL)
     return np.sqrt(np.mean((assorted.reconstruct(Z, e, sigma=sigma, **WELL) / L - 1) ** 2))
 
 
 def ends(e, *, sigma=0.5, most=0.1):
-    """Return log10 of the darkest and brightest light that comes out within 10 %."""
+    """Return log10 of the darkest and brightest light that is reconstructed within 10 %."""
     L = np.geomspace(1e-4, 300, 100)
     good = np.array([error(light, e, sigma=sigma) < most for light in L])
     return np.log10(L[good][[0, -1]])
@@ -40,7 +40,7 @@ def psnr(E, truth):
 
 
 def tones(E, truth):
-    """Return the PSNR of log light over four decades, on which bright and dark count alike."""
+    """Return the PSNR of log light over four decades, which weights bright and dark pixels equally."""
     log = [np.log10(np.clip(light, 1e-3, 10)) for light in (truth, E)]
     return peak_signal_noise_ratio(*log, data_range=4)
 
@@ -56,8 +56,9 @@ def test_the_range_grows_at_the_bright_end_by_added_decades():
 
 
 def test_compared_with_single_pixels_the_whole_range_grows_by_added_decades():
-    """A single shot read pixel by pixel; the mean over neighbours makes up for the dark filters."""
-    single, four = ends(np.ones(SHAPE), sigma=1e-3), ends(FOUR)
+    """A single shot read pixel by pixel; averaging neighbors compensates for the dark filters."""
+    single = ends(np.ones(SHAPE), sigma=1e-3)
+    four = ends(FOUR)
     assert np.diff(four) - np.diff(single) == pytest.approx(assorted.added_decades(FOUR), abs=0.12)
 
 
@@ -84,38 +85,41 @@ def test_the_mosaic_has_each_color_behind_each_filter_equally_often():
 
 
 def test_a_uniform_color_is_reconstructed():
-    c, e = (
-        mosaic.tile(pattern, SHAPE) for pattern in assorted.colours_and_exposures((1.0, 1 / 16))
-    )
+    colors, exposures = assorted.colours_and_exposures((1.0, 1 / 16))
+    c = mosaic.tile(colors, SHAPE)
+    e = mosaic.tile(exposures, SHAPE)
     E = np.ones((*SHAPE, 3)) * [3.0, 0.2, 9.0]
     back = assorted.reconstruct(assorted.shoot(E, e, c, bits=16), e, c)
     assert np.allclose(back, E, rtol=5e-3)
 
 
 def test_plain_demosaicing_is_better_for_an_ordinary_scene():
-    """Sharpness is the price: 28.4 dB beside 30.0 of bilinear interpolation, where nothing is full."""
+    """Nothing is clipped here; the price of assorted pixels is sharpness."""
     E = photograph() * 0.9
     c = mosaic.tile(mosaic.BAYER, E.shape[:2])
     plain = mosaic.demosaic(assorted.shoot(E, np.ones(E.shape[:2]), c, bits=16, **WELL) / 65535, c)
-    c, e = (mosaic.tile(pattern, E.shape[:2]) for pattern in assorted.colours_and_exposures())
+    colors, exposures = assorted.colours_and_exposures()
+    c = mosaic.tile(colors, E.shape[:2])
+    e = mosaic.tile(exposures, E.shape[:2])
     mixed = assorted.reconstruct(assorted.shoot(E, e, c, bits=16, **WELL), e, c, **WELL)
-    assert psnr(plain, E) == pytest.approx(30.0, abs=0.3)
-    assert psnr(mixed, E) == pytest.approx(28.4, abs=0.3)
+    assert psnr(plain, E) > psnr(mixed, E) + 1
 
 
 def test_assorted_pixels_are_better_for_a_scene_too_wide_for_one_exposure():
-    """25.6 dB beside 21.3, counted in the logarithm of light over four decades."""
+    """25.6 dB instead of 21.3 dB, for the logarithm of light over four decades."""
     E = scenes.workshop()[::2, ::2].astype(np.float64)
     E = E / np.quantile(E, 0.8)  # a fifth of the picture is full
     c = mosaic.tile(mosaic.BAYER, E.shape[:2])
     plain = mosaic.demosaic(assorted.shoot(E, np.ones(E.shape[:2]), c, bits=16, **WELL) / 65535, c)
-    c, e = (mosaic.tile(p, E.shape[:2]) for p in assorted.colours_and_exposures((1.0, 1 / 64)))
+    colors, exposures = assorted.colours_and_exposures((1.0, 1 / 64))
+    c = mosaic.tile(colors, E.shape[:2])
+    e = mosaic.tile(exposures, E.shape[:2])
     mixed = assorted.reconstruct(assorted.shoot(E, e, c, bits=16, **WELL), e, c, **WELL)
     assert tones(mixed, E) > tones(plain, E) + 4
 
 
 def waves(frequency, level, e, *, length=256):
-    """Return the spectrum of a wave of that frequency across, at that brightness, as it comes back."""
+    """Return the spectrum of the reconstruction of a horizontal wave of this frequency and level."""
     x = np.arange(length)
     E = level * (1 + 0.5 * np.cos(2 * np.pi * frequency * x)) * np.ones((16, 1))
     e = mosaic.tile(e, E.shape)
@@ -130,11 +134,11 @@ def test_a_wave_below_the_sampling_limit_is_reconstructed(level):
 
 
 def test_a_fine_wave_is_aliased_where_only_dark_filters_measure():
-    """Only every second column knows: 112 waves in 256 pixels look like 16; not so on an even sensor."""
-    plain, strong = (
-        waves(112 / 256, *pair)
-        for pair in ((0.3, np.ones((2, 2))), (40.0, assorted.FOUR_EXPOSURES))
-    )
+    """If only every second column is usable, 112 waves in 256 pixels look like 16; on a plain sensor
+    they do not.
+    """
+    plain = waves(112 / 256, 0.3, np.ones((2, 2)))
+    strong = waves(112 / 256, 40.0, assorted.FOUR_EXPOSURES)
     assert plain[16] < 0.01 and plain[112] > 0.5 and strong[16] > 0.9 and strong[112] < 0.1
 
 
@@ -157,7 +161,8 @@ def test_invalid_arguments_raise_an_error(call):
 
 
 def test_a_weight_is_the_inverse_of_the_variance_of_rounding_photons_and_readout():
-    Z, e = np.array([51, 255], np.uint8), np.array([2.0, 2.0])
+    Z = np.array([51, 255], np.uint8)
+    e = np.array([2.0, 2.0])
     assert assorted.weight(Z, e) == pytest.approx([4 * 12 * 255**2, 0])
     noise = 0.2 / 1000 + (5 / 1000) ** 2 + 1 / (12 * 255**2)
     assert assorted.weight(Z, e, full_well=1000, read_noise=5)[0] == pytest.approx(4 / noise)

@@ -26,7 +26,7 @@ def in_stops(E, truth):
 
 
 def off(E, truth):
-    """Return by how many stops radiance departs from the truth, on the scale that fits best."""
+    """Return the error of radiance in stops, with the scale that fits best."""
     departure = in_stops(E, truth) - in_stops(truth, truth)
     return departure - np.median(departure)
 
@@ -38,7 +38,7 @@ def psnr(E, truth):
 
 @pytest.fixture(scope="module")
 def walk():
-    """A street, three photographs three stops apart, and a visitor who has gone eight pixels between them."""
+    """A street in three photos three stops apart; a visitor walks eight pixels between two photos."""
     place = layers("street", (48, 72))
     times = camera.times_around(place.radiance, 3, stops=3)
     figure = movers.Figure(place.mover, place.mask)
@@ -59,10 +59,14 @@ def test_patches_are_the_windows_of_a_picture():
 
 
 def test_the_patch_distance_is_the_sum_of_squares_plus_the_price():
-    S, price = noise((2, 8, 9, 3)), noise((2, 8, 9), 1)
-    Q, P = patchmatch.make_sources(S, 3, price), patchmatch.cut_patches(noise((8, 9, 3), 2), 3)
+    S = noise((2, 8, 9, 3))
+    price = noise((2, 8, 9), 1)
+    Q = patchmatch.make_sources(S, 3, price)
+    P = patchmatch.cut_patches(noise((8, 9, 3), 2), 3)
     at = np.zeros((6, 7, 3), int)
-    at[..., 0], at[..., 1], at[..., 2] = 1, 3, 2
+    at[..., 0] = 1
+    at[..., 1] = 3
+    at[..., 2] = 2
     expected = ((P[4, 5] - patchmatch.cut_patches(S[1], 3)[3, 2]) ** 2).sum() + price[
         1, 3:6, 2:5
     ].sum()
@@ -70,9 +74,11 @@ def test_the_patch_distance_is_the_sum_of_squares_plus_the_price():
 
 
 def test_patchmatch_finds_nearly_the_same_as_an_exhaustive_search():
-    T, S = noise((14, 15, 1)), noise((2, 16, 17, 1), 3)
+    T = noise((14, 15, 1))
+    S = noise((2, 16, 17, 1), 3)
     S[1, 3:13, 4:14] = T[2:12, 1:11]  # a part of T is to be found again
-    P, Q = patchmatch.cut_patches(T, 5), patchmatch.make_sources(S, 5)
+    P = patchmatch.cut_patches(T, 5)
+    Q = patchmatch.make_sources(S, 5)
     best = ((P[:, :, None] - Q.rows) ** 2).sum(axis=-1).min(axis=-1)
     steps = patchmatch.search_steps(
         P,
@@ -81,10 +87,10 @@ def test_patchmatch_finds_nearly_the_same_as_an_exhaustive_search():
         radius=16,
         rng=np.random.default_rng(0),
     )
-    found = [next(steps) for _ in range(12)]
-    ratios = [float((field.d.mean()) / best.mean()) for field in found]
+    states = [next(steps) for _ in range(12)]
+    ratios = [float((field.d.mean()) / best.mean()) for field in states]
     assert np.all(np.diff(ratios) <= 1e-6) and ratios[-1] < 1.06
-    assert np.array_equal(found[-1].at[3, 4], [1, 4, 7]) and found[-1].d[3, 4] < 1e-9
+    assert np.array_equal(states[-1].at[3, 4], [1, 4, 7]) and states[-1].d[3, 4] < 1e-9
 
 
 def test_upscale_field_scales_the_offsets():
@@ -98,7 +104,8 @@ def test_upscale_field_scales_the_offsets():
 
 def test_voting_with_identity_matches_reproduces_the_image():
     S = noise((1, 10, 11, 3))
-    P, Q = patchmatch.cut_patches(S[0], 3), patchmatch.make_sources(S, 3)
+    P = patchmatch.cut_patches(S[0], 3)
+    Q = patchmatch.make_sources(S, 3)
     field = patchmatch.start_field(P, Q, patchmatch.identity_field(8, 9))
     both = bidirectional.Matches(field, (field,))
     w = noise((1, 8, 9), 4)
@@ -110,19 +117,17 @@ def test_missing_patches_lower_completeness_and_foreign_ones_lower_coherence():
     S = np.zeros((1, 16, 16, 1), np.float32)
     S[0, 5:9, 5:9] = 1
     T = np.zeros((16, 16, 1), np.float32)
-    knobs, at, rng = (
-        bidirectional.Search(5, 4, 16),
-        patchmatch.identity_field(12, 12),
-        np.random.default_rng(0),
-    )
-    free, w = np.zeros((1, 16, 16), np.float32), np.ones((1, 12, 12), np.float32)
+    knobs = bidirectional.Search(5, 4, 16)
+    at = patchmatch.identity_field(12, 12)
+    rng = np.random.default_rng(0)
+    free = np.zeros((1, 16, 16), np.float32)
+    w = np.ones((1, 12, 12), np.float32)
     lacking = bidirectional.search(T, S, free, (at, (at,)), knobs, rng)
     assert lacking.coherence.d.max() == 0 and lacking.completeness[0].d.max() > 1
     alien = bidirectional.search(S[0], T[None], free, (at, (at,)), knobs, rng)
     assert alien.coherence.d.max() > 1 and alien.completeness[0].d.max() == 0
-    assert (
-        bidirectional.similarity(w, lacking) > 0 and bidirectional.similarity(0 * w, lacking) == 0
-    )
+    assert bidirectional.similarity(w, lacking) > 0
+    assert bidirectional.similarity(0 * w, lacking) == 0
 
 
 @settings(max_examples=25, deadline=None)
@@ -136,7 +141,8 @@ def test_values_survive_a_round_trip_through_radiance(t, full):
 
 
 def test_radiance_of_values_agrees_with_merging_a_single_photo(walk):
-    Z, t = walk.bracket.images, walk.bracket.times
+    Z = walk.bracket.images
+    t = walk.bracket.times
     seen = ldr_values.as_values(Z, t, G)
     for k in range(3):
         E = merge_with_quality(Z[k : k + 1], t[k : k + 1], G, repair=False).E
@@ -178,15 +184,18 @@ def test_a_still_scene_is_reconstructed():
 
 
 def test_where_the_reference_is_well_exposed_the_result_is_the_reference(walk):
-    Z, t = walk.bracket.images, walk.bracket.times
+    Z = walk.bracket.images
+    t = walk.bracket.times
     H = patches.synthesise(Z, t, G, rounds=(2, 1))
     well = ((Z[1] > 0.25 * 255) & (Z[1] < 0.84 * 255)).all(axis=-1)
     assert np.allclose(H[well], (np.exp(G[Z[1]]) / t[1])[well], rtol=1e-4) and well.mean() > 0.1
 
 
 def test_a_moving_visitor_appears_as_in_the_reference_without_a_ghost(walk):
-    Z, t = walk.bracket.images, walk.bracket.times
-    H, E = patches.synthesise(Z, t, G), merge_with_quality(Z, t, G).E
+    Z = walk.bracket.images
+    t = walk.bracket.times
+    H = patches.synthesise(Z, t, G)
+    E = merge_with_quality(Z, t, G).E
     truth = walk.moments[1]
     seen = np.abs(in_stops(walk.moments, truth) - in_stops(truth, truth)).max(axis=(0, -1)) > 0.1
     assert 0.05 < seen.mean() < 0.2  # somewhere in any photograph
@@ -209,7 +218,8 @@ def test_the_steps_go_from_coarse_to_fine_with_decreasing_dissimilarity(walk):
 
 
 def test_the_order_of_the_photos_does_not_matter(walk):
-    Z, t = walk.bracket.images[:, :32, :48], walk.bracket.times
+    Z = walk.bracket.images[:, :32, :48]
+    t = walk.bracket.times
     knobs = {"rounds": (2, 1), "coarsest": 16}
     order = [2, 0, 1]
     assert np.array_equal(
@@ -246,30 +256,34 @@ def test_few_gray_black_or_full_photos_give_finite_radiance(count, channels):
     ],
 )
 def test_invalid_arguments_raise_an_error(change):
-    given = {
+    arguments = {
         "images": np.zeros((3, 20, 24, 3), np.uint8),
         "times": [1.0, 2.0, 4.0],
         "g": G,
     } | change
     with pytest.raises(InputError):
-        patches.synthesise(**given)
+        patches.synthesise(**arguments)
 
 
 @pytest.mark.parametrize("step", [(1, 0), (0, 1), (-1, 0), (0, -1), (2, -3)])
 def test_propagate_takes_the_match_of_the_neighbour_or_the_nearest_edge_pixel(step):
     at = np.random.default_rng(3).integers(0, 9, (5, 7, 3))
-    found = patchmatch.propagate(at, step)
+    matches = patchmatch.propagate(at, step)
     for y, x in np.ndindex(5, 7):
         beside = min(max(y - step[0], 0), 4), min(max(x - step[1], 0), 6)
-        assert found[y, x].tolist() == (at[beside] + [0, *step]).tolist()
+        assert matches[y, x].tolist() == (at[beside] + [0, *step]).tolist()
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize(("k", "unknown"), [(0, [[1, 1, 1], [2, 2, 2]]), (1, [[2, 2, 2]]), (2, [])])
 def test_only_pixels_that_a_longer_exposure_clips_have_no_price(k, unknown):
-    L, clipped = np.full((3, 4, 5, 3), 0.5, np.float32), np.zeros((3, 4, 5, 3), bool)
-    clipped[0, 0, 0, 1] = clipped[1, 1, 1, 0] = clipped[2, 2, 2, 2] = True
-    full, alpha = np.ones(3, np.float32), np.ones((4, 5, 1), np.float32)
+    L = np.full((3, 4, 5, 3), 0.5, np.float32)
+    clipped = np.zeros((3, 4, 5, 3), bool)
+    clipped[0, 0, 0, 1] = True
+    clipped[1, 1, 1, 0] = True
+    clipped[2, 2, 2, 2] = True
+    full = np.ones(3, np.float32)
+    alpha = np.ones((4, 5, 1), np.float32)
     scene = synthesis.Scene(L, L / 50, clipped, np.array([1.0, 4, 16]), full, 1, alpha)
     _, price = synthesis.boost_photographs(k, scene)
     assert np.argwhere(np.isinf(price)).tolist() == unknown

@@ -17,24 +17,22 @@ WELL = {"full_well": 20000, "read_noise": 5}
 
 def test_the_beam_splitters_only_lose_the_light_reflected_to_the_lens():
     e = splitter.shares((0.08, 0.06))
-    assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08) and np.log2(
-        e[0] / e[1]
-    ) == pytest.approx(3.6, abs=0.05)
+    assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08)
+    assert np.log2(e[0] / e[1]) == pytest.approx(3.6, abs=0.05)
     assert np.log2(e[1] / e[2]) == pytest.approx(4.1, abs=0.05)
 
 
 def test_each_pixel_is_blended_by_the_case_of_its_neighborhood():
-    B, D = np.full((15, 15), 0.5), np.full((15, 15), 0.7)
+    B = np.full((15, 15), 0.5)
+    D = np.full((15, 15), 0.7)
     full = np.zeros((15, 15), bool)
     full[4:11, 4:11] = True
     E, case = splitter.join_sensors(B, D, full)
     assert case[0, 0] == 1 and E[0, 0] == 0.5
-    assert case[3, 7] == 2 and E[3, 7] == pytest.approx(
-        0.6 * 0.5 + 0.4 * 0.7
-    )  # two rows of five are full
-    assert case[4, 7] == 3 and E[4, 7] == pytest.approx(
-        0.4 * 0.5 + 0.6 * 0.7
-    )  # B is predicted, 0.5
+    assert case[3, 7] == 2
+    assert E[3, 7] == pytest.approx(0.6 * 0.5 + 0.4 * 0.7)  # two rows of five are full
+    assert case[4, 7] == 3
+    assert E[4, 7] == pytest.approx(0.4 * 0.5 + 0.6 * 0.7)  # B is predicted, 0.5
     assert case[7, 7] == 4 and E[7, 7] == 0.7
 
 
@@ -72,12 +70,12 @@ def test_a_well_exposed_pixel_is_the_brightest_sensors_alone():
 
 
 def test_a_moving_scene_leaves_no_ghost_where_a_bracket_does():
-    """Three sensors at one moment, and three photographs one after another with the same shares of light."""
+    """Three sensors at one moment, compared with three photos one after another with the same fractions
+    of light.
+    """
     street = layers("street", (64, 96))
-    room, figure = (
-        luminance(street.radiance) / 8,
-        movers.Figure(luminance(street.mover) / 8, street.mask),
-    )
+    room = luminance(street.radiance) / 8
+    figure = movers.Figure(luminance(street.mover) / 8, street.mask)
     linear = camera.Camera(response="linear", bits=16, **WELL)
     taken = movers.shoot(room, figure, [[0, -5], [0, 5], [0, 15]], E_SHARES[::-1], linear)
     truth = taken.moments[1]
@@ -85,10 +83,8 @@ def test_a_moving_scene_leaves_no_ghost_where_a_bracket_does():
     g = np.log(np.maximum(np.arange(65536), 0.5) / 32768)
     bracket = merge(taken.bracket.images, taken.bracket.times, g) * 32768 / 65535
     there = taken.region & (truth > 0.01)
-    ours, theirs = (
-        np.sqrt(np.mean(np.log2(np.maximum(one, 1e-3) / truth)[there] ** 2))
-        for one in (back, bracket)
-    )
+    ours = np.sqrt(np.mean(np.log2(np.maximum(back, 1e-3) / truth)[there] ** 2))
+    theirs = np.sqrt(np.mean(np.log2(np.maximum(bracket, 1e-3) / truth)[there] ** 2))
     assert ours < 0.1 and theirs > 5 * ours
 
 
@@ -101,7 +97,8 @@ def test_a_mosaic_is_merged_before_its_colours_are_interpolated():
 def test_the_steps_add_the_sensors_from_the_darkest_to_the_brightest():
     Z = splitter.shoot(np.geomspace(0.01, 100, 400).reshape(20, 20), E_SHARES)
     steps = list(splitter.merge_steps(Z, E_SHARES))
-    assert [state.sensor for state in steps] == [2, 1, 0] and set(np.unique(steps[-1].case)) == {
+    assert [state.sensor for state in steps] == [2, 1, 0]
+    assert set(np.unique(steps[-1].case)) == {
         1,
         2,
         3,
@@ -138,7 +135,7 @@ def test_invalid_arguments_raise_an_error(call):
 
 
 def test_a_pixel_exactly_at_the_full_level_counts_as_full():
-    """Light in the brightest sensor's last level may have been any amount: the next sensor has the word."""
+    """Light in the last level of the brightest sensor has no upper bound, so the next sensor decides."""
     Z = np.full((3, 9, 9), 40, np.uint8)
     Z[2, 4, 4] = 255
     *_, last = splitter.merge_steps(Z[::-1], [0.9, 0.07, 0.004], full=1.0)

@@ -18,19 +18,23 @@ G = true_g("film")
 def psnr(E, truth):
     """Return the PSNR of log2 radiance, dB, over the truth's range; its darkest per cent counts as black."""
     floor = np.quantile(truth, 0.01)
-    a, b = (np.log2(np.maximum(one, floor)) for one in (E, truth))
+    a = np.log2(np.maximum(E, floor))
+    b = np.log2(np.maximum(truth, floor))
     return 20 * np.log10(np.ptp(b) / np.sqrt(np.mean((a - b - np.median(a - b)) ** 2)))
 
 
 @pytest.fixture(scope="module")
 def film():
-    """Five frames, four stops apart in turns: the camera pans, and a visitor crosses the street."""
-    place, count = layers("street", (56, 90)), 5
+    """Five frames, alternating four stops apart: the camera pans, and a visitor crosses the street."""
+    place = layers("street", (56, 90))
+    count = 5
     at = movers.path(count, (0, 4))
     pan = np.stack([np.zeros(count, int), np.arange(count)], axis=-1)
     middle = camera.times_around(place.radiance, 1)[0]
     t = middle * np.where(np.arange(count) % 2, 1 / 4, 4)
-    rng, frames, truth = np.random.default_rng(0), [], []
+    rng = np.random.default_rng(0)
+    frames = []
+    truth = []
     for j in range(count):
         seen, _ = movers.compose_moment(
             place.radiance, movers.Figure(place.mover, place.mask), at[j]
@@ -61,23 +65,20 @@ def test_the_flow_of_a_shifted_image_is_the_shift(move):
     inside = np.s_[8:-8, 8:-8]
     assert np.abs(u[:, *inside] - np.array(move).reshape(2, 1, 1)).max() < 0.3
     assert np.abs(flow.warp(b, u) - a)[inside].max() < 0.02
-    assert (
-        not flow.lands_inside(np.full((2, 48, 64), 50.0)).any()
-        and flow.lands_inside(np.zeros((2, 48, 64))).all()
-    )
+    assert not flow.lands_inside(np.full((2, 48, 64), 50.0)).any()
+    assert flow.lands_inside(np.zeros((2, 48, 64))).all()
 
 
 def test_half_of_a_flow_meets_in_the_middle():
-    a, b = smooth(), np.roll(smooth(), 4, axis=1)
+    a = smooth()
+    b = np.roll(smooth(), 4, axis=1)
     middle = np.roll(a, 2, axis=1)
-    there, back = (
-        flow.warp(one, half)
-        for one, half in zip((a, b), flow.halve_flow(flow.tvl1(a, b)), strict=True)
-    )
+    half_forward, half_backward = flow.halve_flow(flow.tvl1(a, b))
+    there = flow.warp(a, half_forward)
+    back = flow.warp(b, half_backward)
     inside = np.s_[8:-8, 10:-10]
-    assert (
-        np.abs(there - middle)[inside].max() < 0.02 and np.abs(back - middle)[inside].max() < 0.02
-    )
+    assert np.abs(there - middle)[inside].max() < 0.02
+    assert np.abs(back - middle)[inside].max() < 0.02
 
 
 def test_a_pixel_is_warped_as_a_line_between_pixels():
@@ -96,9 +97,9 @@ def test_consistency_is_1_for_equal_values_and_0_from_16_levels_on():
 def test_slide_windows_yields_the_neighbors_of_each_item():
     for count in range(6):
         for span in range(4):
-            found = list(neighbours.slide_windows(range(count), span))
-            assert [around[place] for place, around in found] == list(range(count))
-            for i, (_, around) in enumerate(found):
+            windows = list(neighbours.slide_windows(range(count), span))
+            assert [around[place] for place, around in windows] == list(range(count))
+            for i, (_, around) in enumerate(windows):
                 assert list(around) == list(range(max(0, i - span), min(count, i + span + 1)))
 
 
@@ -147,7 +148,7 @@ def test_another_flow_can_be_put_in_its_place(film):
 
 
 def test_frames_are_merged_as_they_come(film):
-    """After the second frame the first is done: a film need not fit into memory."""
+    """The first frame is finished after the second one, so a film need not fit into memory."""
     frames, t, _ = film
     taken = []
     steps = video.merge_steps((taken.append(j) or frame for j, frame in enumerate(frames)), t, G)
@@ -226,17 +227,17 @@ def test_steady_adaptation_reduces_flicker_from_a_blinking_lamp():
     lamp[4:10, 4:10] = 50 * room.max()
     frames = [room, lamp, room, lamp, room, room, lamp, room]
     dark = np.s_[16:]
-    each, together = (
-        steady.flicker(
-            state.Ld[dark] for state in steady.tonemap_steps(frames, reinhard.tonemap, span=span)
-        )
-        for span in (0, 1)
+    alone = steady.flicker(
+        state.Ld[dark] for state in steady.tonemap_steps(frames, reinhard.tonemap, span=0)
     )
-    assert together < 0.7 * each
+    together = steady.flicker(
+        state.Ld[dark] for state in steady.tonemap_steps(frames, reinhard.tonemap, span=1)
+    )
+    assert together < 0.7 * alone
 
 
 def test_frames_that_are_dimmer_than_white_are_not_pulled_up_to_it():
-    """The white of a film is 1 or more: a dark and even room stays as dark as its key makes it."""
+    """The white of a film is 1 or more, so a dark uniform room stays as dark as its key makes it."""
     dim = steady.measure_frame(np.full((8, 8), 3.0))
     average, white = steady.adapt([dim, dim], key=0.18)
     assert white == 1 and average == pytest.approx(3.0, rel=1e-3)
