@@ -1,4 +1,4 @@
-"""hdrlab.enhance.mertens: the measures, the weights, the pyramids; OpenCV beside it."""
+"""hdrlab.enhance.mertens: the measures, the weights, the pyramids; compared with OpenCV."""
 
 import cv2
 import numpy as np
@@ -11,7 +11,7 @@ from hdrlab.enhance import mertens
 
 
 def bracket(shape=(97, 131, 3), frames=3, dtype=np.uint8, seed=0):
-    """Return photographs of colourful noise over soft light, each a step brighter."""
+    """Return photos of colorful noise over soft light, with increasing brightness."""
     rng = np.random.default_rng(seed)
     light = np.linspace(-2, 2, shape[1]).reshape(
         1, -1, *[1] * (len(shape) - 2)
@@ -22,7 +22,7 @@ def bracket(shape=(97, 131, 3), frames=3, dtype=np.uint8, seed=0):
 
 
 def opencv(images, powers=(1, 1, 1)):
-    """Return OpenCV's fusion, of photographs in the order R, G, B."""
+    """Return OpenCV's fusion of RGB photos."""
     return cv2.createMergeMertens(*powers).process(
         [np.ascontiguousarray(image) for image in images]
     )
@@ -60,7 +60,9 @@ def test_a_middle_gray_is_well_exposed_and_the_ends_are_not():
 
 def test_the_weight_is_the_product_of_powers():
     F = mertens.split_planes(bracket()[1])
-    C, S, E = mertens.contrast(F), mertens.saturation(F), mertens.exposedness(F)
+    C = mertens.contrast(F)
+    S = mertens.saturation(F)
+    E = mertens.exposedness(F)
     assert np.allclose(mertens.weight(F, (0.5, 2, 1)), C**0.5 * S**2 * E, atol=1e-7)
     assert np.allclose(mertens.weight(F, (0, 0, 0)), 1)
 
@@ -112,11 +114,10 @@ def test_differences_from_opencv_are_rounding_where_no_photo_has_weight(shared, 
     are alike; without it, those that differ are such pixels or next to one.
     """
     images = photographs(shared("mertens_house"))
-    theirs, ours = opencv(images), mertens.fuse(images)
-    exact, heaviest = (
-        list(mertens.weights(images)),
-        np.max([weigh(image) for image in images], axis=0),
-    )
+    theirs = opencv(images)
+    ours = mertens.fuse(images)
+    exact = list(mertens.weights(images))
+    heaviest = np.max([weigh(image) for image in images], axis=0)
     monkeypatch.setattr(mertens, "contrast", contrast_with_opencvs_rounding)
     monkeypatch.setattr(mertens, "saturation", saturation_with_opencvs_rounding)
     assert np.abs(mertens.fuse(images) - theirs).max() < 1e-5
@@ -136,7 +137,7 @@ def weigh(image):
 
 
 def test_rounding_leaves_no_contrast_in_flat_and_no_saturation_in_gray_images():
-    """Otherwise 1e-8 of nothing would outweigh the trace of 1e-12; whichever value it has, and in colour."""
+    """Otherwise rounding errors of 1e-8 would outweigh the constant 1e-12, for any gray or color."""
     levels = np.arange(256, dtype=np.uint8)
     gray = mertens.split_planes(np.broadcast_to(levels[:, None, None], (256, 7, 3)))
     assert not mertens.saturation(gray).any()
@@ -165,10 +166,10 @@ def test_every_step_adds_one_photograph_to_every_level():
     colour=st.booleans(),
 )
 def test_copies_of_one_photograph_fuse_to_it_at_any_size(frames, height, width, colour):
-    one = bracket((height, width, 3) if colour else (height, width), frames=1)[0]
-    fused = mertens.fuse(np.stack([one] * frames))
-    assert fused.shape == one.shape and fused.dtype == np.float32
-    assert np.allclose(fused, one / 255, atol=1e-4)
+    photo = bracket((height, width, 3) if colour else (height, width), frames=1)[0]
+    fused = mertens.fuse(np.stack([photo] * frames))
+    assert fused.shape == photo.shape and fused.dtype == np.float32
+    assert np.allclose(fused, photo / 255, atol=1e-4)
 
 
 def test_sixteen_bits_fuse_as_eight():
@@ -185,7 +186,7 @@ def test_the_order_of_the_photographs_does_not_matter():
 
 
 def test_the_result_is_not_clipped():
-    """Detail of one frame on top of the light of another one leaves [0, 1]."""
+    """Details of one frame added to the light of another exceed [0, 1]."""
     R = mertens.fuse(np.random.default_rng(0).integers(0, 256, (3, 97, 131, 3), dtype=np.uint8))
     assert R.min() < -0.01 and R.max() > 1.01
 
