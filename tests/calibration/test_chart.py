@@ -14,13 +14,15 @@ TIMES = 2.0 ** np.arange(-6, 1.5, 0.5)
 
 
 def drawn(values, *, patch=40, gap=chart.GAP, margin=20):
-    """Return a picture of patches of these values (rows, columns) on black, and the corners."""
+    """Return an image of patches with these values (rows, columns) on black, and the corners."""
     pitch = round(patch * (1 + gap))
     rows, columns = values.shape
-    wide, high = columns * pitch - (pitch - patch), rows * pitch - (pitch - patch)
+    wide = columns * pitch - (pitch - patch)
+    high = rows * pitch - (pitch - patch)
     picture = np.zeros((high + 2 * margin, wide + 2 * margin))
     for (i, j), value in np.ndenumerate(values):
-        y, x = margin + i * pitch, margin + j * pitch
+        y = margin + i * pitch
+        x = margin + j * pitch
         picture[y : y + patch, x : x + patch] = value
     return picture, margin - 0.5 + SQUARE * [wide, high]
 
@@ -28,7 +30,8 @@ def drawn(values, *, patch=40, gap=chart.GAP, margin=20):
 def test_the_homography_maps_the_corners_and_agrees_with_scikit_image():
     rng = np.random.default_rng(0)
     for _ in range(20):
-        source, target = (10 * SQUARE + rng.uniform(-2, 2, (4, 2)) for _ in range(2))
+        source = 10 * SQUARE + rng.uniform(-2, 2, (4, 2))
+        target = 10 * SQUARE + rng.uniform(-2, 2, (4, 2))
         H = chart.homography(source, target)
         oracle = ProjectiveTransform(H)
         assert np.allclose(oracle(source), target, atol=1e-9)
@@ -75,7 +78,8 @@ def test_channels_and_16_bits_are_read_like_gray():
 
 def test_the_gray_reflectances_agree_with_munsell_values_and_densities():
     """Closed forms: the polynomial of Newhall, Nickerson and Judd, 1943, and R = 10^-D by the label."""
-    V, D = np.array([9.5, 8, 6.5, 5, 3.5, 2]), np.array([0.05, 0.23, 0.44, 0.70, 1.05, 1.5])
+    V = np.array([9.5, 8, 6.5, 5, 3.5, 2])
+    D = np.array([0.05, 0.23, 0.44, 0.70, 1.05, 1.5])
     Y = 1.2219 * V - 0.23111 * V**2 + 0.23951 * V**3 - 0.021009 * V**4 + 0.0008404 * V**5
     assert np.allclose(100 * chart.NEUTRAL, Y, atol=0.01)
     assert np.allclose(chart.NEUTRAL, 10**-D, rtol=0.02)
@@ -84,7 +88,7 @@ def test_the_gray_reflectances_agree_with_munsell_values_and_densities():
 @pytest.mark.papers
 def test_the_reflectances_are_those_of_the_specification_and_near_to_those_of_measured_charts():
     listed = pytest.importorskip("colour.characterisation").CCS_COLOURCHECKERS
-    Y = {name: [100 * one[2] for one in listed[name].data.values()] for name in listed}
+    Y = {name: [100 * color[2] for color in listed[name].data.values()] for name in listed}
     assert np.allclose(chart.LUMINANCE.ravel(), Y["ColorChecker 1976"], atol=1e-9)
     assert np.allclose(chart.LUMINANCE[3], Y["BabelColor Average"][18:], rtol=0.035)
 
@@ -93,9 +97,11 @@ def test_the_reflectances_are_those_of_the_specification_and_near_to_those_of_me
 def test_one_photograph_of_the_grays_gives_the_response(name):
     response = responses.as_response(name)
     M = response.f(chart.NEUTRAL)
-    g = ln_exposure(found := chart.recover_gray(M), black=chart.recover_gray(M).r[0])
-    at = np.round(found.M[[0, -1]] * 255).astype(int)
-    low, high = max(at[0], 15), at[1]
+    recovered = chart.recover_gray(M)
+    g = ln_exposure(recovered, black=recovered.r[0])
+    at = np.round(recovered.M[[0, -1]] * 255).astype(int)
+    low = max(at[0], 15)
+    high = at[1]
     error = np.exp(g[low:high]) / np.exp(g[high]) - np.exp(
         responses.true_g(name)[low:high] - responses.true_g(name)[high]
     )
@@ -110,10 +116,14 @@ def test_many_exposures_give_the_response_without_any_reflectance(name):
         picture, TIMES, camera.Camera(response=name, full_well=50_000, read_noise=5), rng=3
     )
     M = chart.read_bracket(taken.images, corners)
-    found = chart.recover_bracket(M, taken.times)
+    recovered = chart.recover_bracket(M, taken.times)
     inverse = responses.as_response(name).inverse
-    assert rmse(found, InverseResponse(found.M, inverse(found.M), np.ones(0), np.ones(0))) < 0.003
-    g, true = ln_exposure(found, black=found.r[0]), responses.true_g(name)
+    assert (
+        rmse(recovered, InverseResponse(recovered.M, inverse(recovered.M), np.ones(0), np.ones(0)))
+        < 0.003
+    )
+    g = ln_exposure(recovered, black=recovered.r[0])
+    true = responses.true_g(name)
     assert np.abs(g[30:230] - true[30:230]).max() < 0.05
 
 

@@ -51,9 +51,8 @@ def test_every_patch_is_on_for_its_fraction_of_the_schedule_and_switches_once():
         15, 15
     )
     assert np.array_equal((shown == 200).mean(axis=0), np.arange(1, 16) / 15)
-    assert np.all(np.sum(np.diff(shown.astype(int), axis=0) != 0, axis=0) <= 1) and set(
-        np.unique(shown)
-    ) == {
+    assert np.all(np.sum(np.diff(shown.astype(int), axis=0) != 0, axis=0) <= 1)
+    assert set(np.unique(shown)) == {
         7,
         200,
     }
@@ -70,12 +69,12 @@ def test_the_patches_are_centered_on_black():
 def test_the_grid_is_read_back_from_a_photograph_of_it():
     schedule = Schedule((250, 100))
     shown = display.draw_schedule(schedule, shape=(380, 320))
-    image, corners = np.round(shown.mean(axis=0)).astype(np.uint8), display.find_corners(shown[0])
+    image = np.round(shown.mean(axis=0)).astype(np.uint8)
+    corners = display.find_corners(shown[0])
     read = display.read_blends(image, corners, schedule, low=0, high=1)
-    for one, high in zip(read[0], (250, 100), strict=True):
-        assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(
-            one.I, ALPHA
-        )
+    for patch_values, high in zip(read[0], (250, 100), strict=True):
+        assert np.allclose(patch_values.M * 255, np.round(high * ALPHA), atol=1e-9)
+        assert np.allclose(patch_values.I, ALPHA)
 
 
 @pytest.mark.quick
@@ -91,10 +90,11 @@ def test_a_photo_without_the_grid_raises_an_error(rows):
 @pytest.mark.parametrize(("scale", "offset"), [(1.0, 0.0), (3.0, 0.7), (0.2, -5.0)])
 def test_curves_that_differ_in_scale_and_offset_alone_are_the_same(scale, offset):
     M = np.linspace(0.1, 0.9, 200)
-    truth, cut = InverseResponse(M, M**2, np.ones(0), np.ones(0)), slice(20, -30)
-    found = InverseResponse(M[cut], scale * M[cut] ** 2 + offset, np.ones(0), np.ones(0))
+    truth = InverseResponse(M, M**2, np.ones(0), np.ones(0))
+    cut = slice(20, -30)
+    recovered = InverseResponse(M[cut], scale * M[cut] ** 2 + offset, np.ones(0), np.ones(0))
     for fit in (False, True):
-        assert np.allclose(difference(found, truth, fit=fit), 0, atol=1e-9)
+        assert np.allclose(difference(recovered, truth, fit=fit), 0, atol=1e-9)
 
 
 # Joining
@@ -103,37 +103,39 @@ def test_curves_that_differ_in_scale_and_offset_alone_are_the_same(scale, offset
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("name", ["linear", "srgb", "cubic"])
 def test_blends_without_noise_give_the_response(solver, name):
-    found = SOLVERS[solver](two_blends(as_response(name).f))
-    true = InverseResponse(found.M, as_response(name).inverse(found.M), np.ones(0), np.ones(0))
-    assert rmse(found, true) < 0.002
+    ramps = SOLVERS[solver](two_blends(as_response(name).f))
+    true = InverseResponse(ramps.M, as_response(name).inverse(ramps.M), np.ones(0), np.ones(0))
+    assert rmse(ramps, true) < 0.002
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_scales_and_offsets_are_those_of_the_blends(solver):
-    found = SOLVERS[solver](two_blends(as_response("srgb").f, dim=0.3, start=0.02))
-    assert found.s[1] / found.s[0] == pytest.approx(0.28 / 0.98, rel=0.02)
-    assert found.r[1] == pytest.approx(found.r[0], abs=0.003)
+    recovered = SOLVERS[solver](two_blends(as_response("srgb").f, dim=0.3, start=0.02))
+    assert recovered.s[1] / recovered.s[0] == pytest.approx(0.28 / 0.98, rel=0.02)
+    assert recovered.r[1] == pytest.approx(recovered.r[0], abs=0.003)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_the_unit_of_irradiance_does_not_matter(solver):
     blends = two_blends(as_response("srgb").f)
-    other = [Blend(7 * one.I + 3, one.M) for one in blends]
+    other = [Blend(7 * blend.I + 3, blend.M) for blend in blends]
     assert rmse(SOLVERS[solver](other), SOLVERS[solver](blends)) < 2e-4
 
 
 def test_the_simplex_finds_the_minimum_of_the_quadratic():
     f = as_response("cubic").inverse  # a camera f = inverse: g is no polynomial
     blends = two_blends(f, dim=0.6)
-    low = min(one.M.min() for one in blends)
-    high = max(one.M.max() for one in blends)
-    Q = wilburn.quadratic_form([Blend(one.I, (one.M - low) / (high - low)) for one in blends], 3)
-    fixed, D = np.array([0.0, 1, 0, 0]), np.vstack([np.zeros(2), -np.ones(2), np.eye(2)])
+    low = min(blend.M.min() for blend in blends)
+    high = max(blend.M.max() for blend in blends)
+    Q = wilburn.quadratic_form(
+        [Blend(blend.I, (blend.M - low) / (high - low)) for blend in blends], 3
+    )
+    fixed = np.array([0.0, 1, 0, 0])
+    D = np.vstack([np.zeros(2), -np.ones(2), np.eye(2)])
     free = np.linalg.solve(D.T @ Q @ D, -D.T @ Q @ fixed)
     state = list(wilburn.join_steps(blends, degree=3))[-1]
-    assert np.allclose(state.a[2:], free, atol=1e-3) and state.E <= 1.001 * wilburn.error(
-        fixed + D @ free, Q
-    )
+    assert np.allclose(state.a[2:], free, atol=1e-3)
+    assert state.E <= 1.001 * wilburn.error(fixed + D @ free, Q)
 
 
 def test_both_joining_methods_agree_for_a_polynomial_response():
@@ -145,10 +147,10 @@ def test_the_error_is_the_papers_sum():
     blends = two_blends(as_response("srgb").f)
     a = np.array([0, 0.5, 0.3, 0.2])
     by_hand = 0.0
-    for one in blends:
-        s, r = np.polyfit(one.I, wilburn.evaluate(one.M, a), 1)
+    for blend in blends:
+        s, r = np.polyfit(blend.I, wilburn.evaluate(blend.M, a), 1)
         by_hand += sum(
-            (s * x + r - wilburn.evaluate(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True)
+            (s * x + r - wilburn.evaluate(m, a)) ** 2 for x, m in zip(blend.I, blend.M, strict=True)
         )
     assert wilburn.error(a, wilburn.quadratic_form(blends, 3)) == pytest.approx(by_hand)
 
@@ -157,15 +159,16 @@ def test_the_error_is_the_papers_sum():
 def test_a_joined_curve_never_falls(solver):
     rng = np.random.default_rng(0)
     blends = [
-        Blend(one.I, one.M + 0.01 * rng.standard_normal(15))
-        for one in two_blends(as_response("film").f)
+        Blend(blend.I, blend.M + 0.01 * rng.standard_normal(15))
+        for blend in two_blends(as_response("film").f)
     ]
     assert np.all(np.diff(SOLVERS[solver](blends).X) >= -1e-9)
 
 
 def test_the_table_is_the_chapters_g():
-    found = joining.join([Blend(one.I, one.M) for one in two_blends(as_response("srgb").f)])
-    g, true = ln_exposure(found, black=found.r.min()), true_g("srgb")
+    joined = joining.join([Blend(blend.I, blend.M) for blend in two_blends(as_response("srgb").f)])
+    g = ln_exposure(joined, black=joined.r.min())
+    true = true_g("srgb")
     assert g.shape == (256,) and g[128] == 0 and np.all(np.diff(g) >= 0)
     assert np.abs(g[32:] - true[32:]).max() < 0.01  # no sample lies lower
 
@@ -181,11 +184,11 @@ def test_several_blends_calibrate_the_screen_too(papers):
 
 def test_ramps_are_found_at_their_true_positions(papers):
     image = papers.blurred(as_response("linear").f, np.random.default_rng(0), lines=20)
-    found = motion_blur.find_ramps(image)
-    assert [one.rises for one in found] == [False, True] * 20
-    for one in found:
-        inside = (40, 140) if not one.rises else (180, 280)
-        assert inside[0] <= one.start < one.stop <= inside[1] and one.stop - one.start > 70
+    ramps = motion_blur.find_ramps(image)
+    assert [ramp.rises for ramp in ramps] == [False, True] * 20
+    for ramp in ramps:
+        inside = (40, 140) if not ramp.rises else (180, 280)
+        assert inside[0] <= ramp.start < ramp.stop <= inside[1] and ramp.stop - ramp.start > 70
 
 
 def test_noise_does_not_choose_the_ends_of_a_ramp(papers):
@@ -194,21 +197,20 @@ def test_noise_does_not_choose_the_ends_of_a_ramp(papers):
     A line by itself ends where it seems bright enough: just inside of that, what noise has darkened
     is left.
     """
-    first, second = (
-        papers.blurred(as_response("film").f, np.random.default_rng(seed)) for seed in (0, 1)
-    )
+    first = papers.blurred(as_response("film").f, np.random.default_rng(0))
+    second = papers.blurred(as_response("film").f, np.random.default_rng(1))
     other = first.copy()
     other[150] = second[150]
     assert motion_blur.find_ramps(first)[300:302] == motion_blur.find_ramps(other)[300:302]
 
-    def first_sample(found):
+    def first_sample(ramps):
         away = first - first.mean(axis=0)
-        return np.mean([away[one.row, one.start] for one in found if not one.rises])
+        return np.mean([away[ramp.row, ramp.start] for ramp in ramps if not ramp.rises])
 
     alone = [
-        one._replace(row=k)
+        ramp._replace(row=k)
         for k, line in enumerate(first)
-        for one in motion_blur.find_ramps(line[None])
+        for ramp in motion_blur.find_ramps(line[None])
     ]
     tolerance = 3 * 255 * papers.SIGMA / np.sqrt(300)
     assert abs(first_sample(motion_blur.find_ramps(first))) < tolerance < -first_sample(alone)
@@ -218,13 +220,16 @@ def test_a_slanted_edge_is_followed_and_other_pixels_are_ignored(papers):
     image = papers.blurred(as_response("srgb").f, np.random.default_rng(2), lines=40)
     wide = np.pad(image, ((0, 0), (120, 120)), mode="edge")
     slanting = np.stack([np.roll(row, 3 * (k - 20)) for k, row in enumerate(wide)])
-    straight, found = motion_blur.find_ramps(wide), motion_blur.find_ramps(slanting)
-    assert len(found) == len(straight) == 80
-    for one, other in zip(found, straight, strict=True):
-        assert abs(one.start - 3 * (one.row - 20) - other.start) <= 1  # pixel
+    straight = motion_blur.find_ramps(wide)
+    ramps = motion_blur.find_ramps(slanting)
+    assert len(ramps) == len(straight) == 80
+    for ramp, straight_ramp in zip(ramps, straight, strict=True):
+        assert abs(ramp.start - 3 * (ramp.row - 20) - straight_ramp.start) <= 1  # pixel
     slanting[7] = wide[7, 0]
     slanting[7, 150:190] = np.r_[np.arange(240, 40, -10), np.zeros(20)]  # another, steeper edge
-    assert {one.row for one in found} - {one.row for one in motion_blur.find_ramps(slanting)} == {7}
+    assert {ramp.row for ramp in ramps} - {
+        ramp.row for ramp in motion_blur.find_ramps(slanting)
+    } == {7}
 
 
 def test_a_line_without_an_edge_has_no_ramp():
@@ -247,22 +252,18 @@ def test_linear_motion_is_accepted_and_15_percent_acceleration_is_rejected(paper
 @pytest.mark.parametrize("name", sorted(RESPONSES))
 def test_the_polynomial_reaches_the_published_errors(papers, name):
     got = papers.table1(name, sets=1, lines=60)
-    assert (
-        got["display, polynomial"].rmse.mean() <= 0.012
-        and got["blur, polynomial"].rmse.mean() <= 0.012
-    )
-    assert (
-        got["display, spline"].disparity.mean() < 0.017
-        and got["blur, spline"].disparity.mean() < 0.029
-    )
+    assert got["display, polynomial"].rmse.mean() <= 0.012
+    assert got["blur, polynomial"].rmse.mean() <= 0.012
+    assert got["display, spline"].disparity.mean() < 0.017
+    assert got["blur, spline"].disparity.mean() < 0.029
 
 
 def test_the_compared_method_reaches_the_published_disparity(papers):
-    """Ten sets, of which the worst two are left out, as in the paper."""
+    """Ten sets, of which the two worst are left out, as in the paper."""
     cameras = [as_response("srgb").f] * 10
-    near, far = (
-        papers.without_outliers(papers.self_calibrated(cameras, off=off)) for off in papers.OFF
-    )
+    small_error, large_error = papers.OFF
+    near = papers.without_outliers(papers.self_calibrated(cameras, off=small_error))
+    far = papers.without_outliers(papers.self_calibrated(cameras, off=large_error))
     assert len(near.rmse) == 8 and near.rmse.mean() < 0.006
     assert near.disparity.mean() < far.disparity.mean() < 0.017
 
@@ -318,7 +319,7 @@ def test_invalid_blends_raise_an_error(tmp_path):
 
 def test_the_whole_range_may_be_bright_and_one_side_alone_raises_an_error():
     row = np.r_[np.zeros(20), np.arange(3, 255, 6), np.full(20, 255)].astype(np.uint8)
-    found = motion_blur.find_ramps(np.stack([row] * 4), low=0.0, high=1.0)
-    assert len(found) == 4 and all(one.rises for one in found)
+    ramps = motion_blur.find_ramps(np.stack([row] * 4), low=0.0, high=1.0)
+    assert len(ramps) == 4 and all(ramp.rises for ramp in ramps)
     with pytest.raises(ValueError, match="0 down and 4 up"):
-        motion_blur.compare_edges(np.stack([row] * 4), found)
+        motion_blur.compare_edges(np.stack([row] * 4), ramps)
