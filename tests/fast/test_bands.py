@@ -1,4 +1,4 @@
-"""hdrlab.fast._bands: bands as the whole picture."""
+"""hdrlab.fast._bands: the result in bands equals that of the whole image."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,8 @@ def test_computing_in_bands_gives_the_same_result_as_the_whole_image(height):
 
 
 def test_bands_take_planes_and_several_pictures():
-    u, planes = noise((70, 9)), noise((3, 70, 9), 1)
+    u = noise((70, 9))
+    planes = noise((3, 70, 9), 1)
     assert np.array_equal(
         bands.banded(lambda u, p: u * p.sum(axis=0), u, planes), u * planes.sum(axis=0)
     )
@@ -36,10 +37,10 @@ def test_bands_take_planes_and_several_pictures():
 def test_pyramids_of_several_bands_and_planes_equal_those_of_the_lesson():
     rng = np.random.default_rng(2)
     picture = rng.uniform(0, 1, (2, 300, 261)).astype(np.float32)
-    for found, expected in zip(
+    for result, expected in zip(
         quick.laplacian(picture, 3), lesson.laplacian(picture, 3), strict=True
     ):
-        np.testing.assert_allclose(found, expected, atol=1e-6)
+        np.testing.assert_allclose(result, expected, atol=1e-6)
     fine = quick.interpolate(picture[0], (600, 522))
     np.testing.assert_allclose(fine, lesson.interpolate(picture[0], (600, 522)), atol=1e-6)
 

@@ -26,7 +26,8 @@ def samples(N=40, P=5, seed=0, **knobs):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_the_fast_solution_equals_the_lesson(seed, smoothness, w):
     Z, B = samples(seed=seed)
-    fast, slow = debevec.gsolve(Z, B, smoothness, w), lesson.gsolve(Z, B, smoothness, w)
+    fast = debevec.gsolve(Z, B, smoothness, w)
+    slow = lesson.gsolve(Z, B, smoothness, w)
     assert np.allclose(fast.g, slow.g, rtol=0, atol=1e-8)
     assert np.allclose(fast.lE, slow.lE, rtol=0, atol=1e-8)
 
@@ -34,7 +35,8 @@ def test_the_fast_solution_equals_the_lesson(seed, smoothness, w):
 @pytest.mark.parametrize("seed", range(5))
 def test_with_cut_weights_the_fast_solution_equals_the_lesson_and_is_constant_above_the_cut(seed):
     Z, B = samples(seed=seed)
-    fast, slow = debevec.gsolve(Z, B, 30, CUT).g, lesson.gsolve(Z, B, 30, CUT).g
+    fast = debevec.gsolve(Z, B, 30, CUT).g
+    slow = lesson.gsolve(Z, B, 30, CUT).g
     reached = (
         np.flatnonzero(CUT)[-1] + 1
     )  # the last smoothness row reaches one level beyond the cut
@@ -62,11 +64,9 @@ def test_a_sample_without_weight_has_lE_0_and_does_not_change_the_others():
     Z, B = samples()
     seen = debevec.gsolve(Z, B, 30, CUT)
     more = debevec.gsolve(np.concatenate([Z, np.full((1, len(B)), 255)]), B, 30, CUT)
-    assert (
-        more.lE[-1] == 0
-        and np.allclose(more.g, seen.g, atol=1e-12)
-        and np.allclose(more.lE[:-1], seen.lE)
-    )
+    assert more.lE[-1] == 0
+    assert np.allclose(more.g, seen.g, atol=1e-12)
+    assert np.allclose(more.lE[:-1], seen.lE)
 
 
 def test_samples_seen_in_one_frame_do_not_change_the_curve():
@@ -81,7 +81,7 @@ def test_samples_seen_in_one_frame_do_not_change_the_curve():
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("changes", "message"),
     [
         ({"Z": [[0.5, 1.0]]}, "integer pixel levels"),
         ({"Z": [1, 2]}, r"integer pixel levels Z \(N, P\), got shape \(2,\)"),
@@ -98,9 +98,9 @@ def test_samples_seen_in_one_frame_do_not_change_the_curve():
         ({"B": [0, 0]}, "well exposed in two photos"),
     ],
 )
-def test_invalid_arguments_of_gsolve_raise_an_error(given, said):
-    knobs = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | given
-    with pytest.raises(ValueError, match=said):
+def test_invalid_arguments_of_gsolve_raise_an_error(changes, message):
+    knobs = {"Z": [[100, 200]], "B": [0.0, 1.0], "smoothness": 10, "w": weights.hat()} | changes
+    with pytest.raises(ValueError, match=message):
         debevec.gsolve(**knobs)
 
 
@@ -108,7 +108,7 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
 
 
 @pytest.mark.parametrize(
-    ("images", "times", "said"),
+    ("images", "times", "message"),
     [
         (STACK[:1], [1], "at least 2 different exposure times, got"),
         (STACK, [1, 1], r"at least 2 different exposure times, got \[1.0, 1.0\] s"),
@@ -128,8 +128,8 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
         "float",
     ],
 )
-def test_a_bracket_without_usable_samples_raises_an_error(images, times, said):
-    with pytest.raises(ValueError, match=said):
+def test_a_bracket_without_usable_samples_raises_an_error(images, times, message):
+    with pytest.raises(ValueError, match=message):
         debevec.recover(images, times)
 
 
@@ -141,7 +141,8 @@ def rmse(g, name):
 
     A curve is known up to the unit of exposure, which is fitted.
     """
-    X, truth = np.exp(g[10:251]), np.exp(responses.true_g(name)[10:251])
+    X = np.exp(g[10:251])
+    truth = np.exp(responses.true_g(name)[10:251])
     return np.sqrt(np.mean((X * (X @ truth) / (X @ X) - truth) ** 2)) / truth.max()
 
 
@@ -204,8 +205,10 @@ def test_the_curve_rises_even_where_noise_would_make_it_fall(decades):
 def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
-    images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
-    images[1:3, :, :20], valid[1:3, :, :20] = 90, False
+    images = taken.images.copy()
+    valid = np.ones(taken.images.shape, bool)
+    images[1:3, :, :20] = 90
+    valid[1:3, :, :20] = False
     g = debevec.recover(taken.images[:, :, 20:], taken.times)
     assert np.allclose(debevec.recover(images, taken.times, valid=valid), g, atol=1e-12)
     assert np.abs(debevec.recover(images, taken.times) - g)[20:230].max() > 0.1
@@ -219,6 +222,6 @@ def test_a_curve_has_256_levels_at_any_depth(dtype):
 
 
 def test_an_underdetermined_system_raises_an_error():
-    """Two samples connect no levels with each other, and without smoothness nothing else does."""
+    """Two samples connect no levels with each other, and without smoothness nothing else connects them."""
     with pytest.raises(InputError, match="more pixels, photos or smoothness"):
         debevec.gsolve([[100, 200], [10, 20]], [0.0, 1.0], 0, weights.hat())

@@ -1,4 +1,4 @@
-"""What `fast.mtb` promises beside its lesson's answers: words that count as pixels do."""
+"""`fast.mtb` counts bits in words as the lesson counts pixels."""
 
 import numpy as np
 import pytest
@@ -27,8 +27,10 @@ def test_errors_counted_in_machine_words_equal_errors_counted_per_pixel(rows, co
 @pytest.mark.parametrize("offset", [(0, 0), (7, -4), (-90, 33)])
 def test_comparing_some_rows_of_a_large_image_gives_nearly_the_same_error(offset):
     Y = zoom(camera(), 2.5, order=1)
-    (dy, dx), shape = offset, (1000, 1100)
-    fixed, moving = Y[100:1100, 100:1200], Y[100 + dy : 1100 + dy, 100 + dx : 1200 + dx] // 2
+    dy, dx = offset
+    shape = (1000, 1100)
+    fixed = Y[100:1100, 100:1200]
+    moving = Y[100 + dy : 1100 + dy, 100 + dx : 1200 + dx] // 2
     assert mtb.align(np.stack([moving, fixed]), bits=8)[0].tolist() == [dy, dx]
     both = mtb.Photograph(moving), mtb.Photograph(fixed)
     some = both[0].count_differences(both[1], (dy + 2, dx), 0).sum(axis=0)

@@ -59,8 +59,9 @@ def test_seven_frames_give_the_response_to_three_tenths_of_a_percent(name, seven
 
 
 def test_without_smoothness_frames_2_stops_apart_leave_the_start_in_the_curve(decades):
-    """The ambiguity of equal steps: 4 % at 2 stops, 0.5 % at 1 stop; uneven steps heal it."""
-    E, found = decades(seed=3), []
+    """The ambiguity of equal steps: 4 % at 2 stops, 0.5 % at 1 stop; uneven steps remove it."""
+    E = decades(seed=3)
+    curves = []
     for stops in (
         np.arange(7) * 2.0,
         np.arange(7) * 1.0,
@@ -73,8 +74,8 @@ def test_without_smoothness_frames_2_stops_apart_leave_the_start_in_the_curve(de
         g = robertson.recover(
             taken.images, taken.times, steps=partial(robertson.recover_steps, max_iterations=50)
         )
-        found.append(laws.curve_error(g, responses.true_g("gamma")))
-    assert 0.02 < found[0] < 0.045 and found[1] < 0.006 and found[2] < 0.6 * found[0]
+        curves.append(laws.curve_error(g, responses.true_g("gamma")))
+    assert 0.02 < curves[0] < 0.045 and curves[1] < 0.006 and curves[2] < 0.6 * curves[0]
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -92,18 +93,20 @@ def test_cut_weights_keep_noise_from_bending_the_curve(decades):
     taken = camera.shoot(
         E, camera.times_around(E, 7, stops=2), camera.Camera(response="linear", **knobs), rng=1
     )
-    usual, cut = (
-        laws.curve_error(smooth(taken.images, taken.times, w=w), responses.true_g("linear"))
-        for w in (weights.gaussian(), WEIGHTS)
+    usual = laws.curve_error(
+        smooth(taken.images, taken.times, w=weights.gaussian()), responses.true_g("linear")
     )
+    cut = laws.curve_error(smooth(taken.images, taken.times, w=WEIGHTS), responses.true_g("linear"))
     assert cut < 0.005 and usual > 10 * cut
 
 
 def test_masked_pixels_do_not_change_the_curve(decades):
     E = decades((60, 80))
     taken = camera.shoot(E, camera.times_around(E, 5, stops=2))
-    images, valid = taken.images.copy(), np.ones(taken.images.shape, bool)
-    images[1:3, :, :20], valid[1:3, :, :20] = 90, False
+    images = taken.images.copy()
+    valid = np.ones(taken.images.shape, bool)
+    images[1:3, :, :20] = 90
+    valid[1:3, :, :20] = False
     for choose in (sampling.by_rank, sampling.every_pixel):
         g = smooth(taken.images[:, :, 20:], taken.times, choose=choose)
         hidden = smooth(images, taken.times, choose=choose, valid=valid)
@@ -123,7 +126,7 @@ def test_each_channel_is_recovered_independently(decades):
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("changes", "message"),
     [
         ({"images": "one"}, "well exposed in two photos"),
         ({"times": [1, 1]}, "well exposed in two photos"),
@@ -132,14 +135,14 @@ def test_each_channel_is_recovered_independently(decades):
         ({"times": [1, 0]}, "positive exposure times"),
     ],
 )
-def test_brackets_without_two_exposures_raise_an_error(given, said):
+def test_brackets_without_two_exposures_raise_an_error(changes, message):
     stack = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
     stacks = {"one": stack[:1], "black": stack * 0, "white": stack * 0 + 255}
-    knobs = {"images": stack, "times": [1, 2]} | given
+    knobs = {"images": stack, "times": [1, 2]} | changes
     if isinstance(knobs["images"], str):
         knobs["images"] = stacks[knobs["images"]]
         knobs["times"] = knobs["times"][: len(knobs["images"])]
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         smooth(**knobs)
 
 

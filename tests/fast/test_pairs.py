@@ -1,4 +1,4 @@
-"""What stands in `fast` is a lesson, faster: the same name, the same signature, the same result."""
+"""A function in `fast` is a faster version of a lesson: the same name, signature and result."""
 
 import inspect
 import pkgutil
@@ -29,22 +29,22 @@ def functions(module):
     """Return a module's own public functions by name."""
     own = vars(module).items()
     return {
-        name: one
-        for name, one in own
-        if inspect.isfunction(one)
-        and one.__module__ == module.__name__
+        name: function
+        for name, function in own
+        if inspect.isfunction(function)
+        and function.__module__ == module.__name__
         and not name.startswith("_")
     }
 
 
 def lesson(module, name):
-    """Return the lesson's function of a name, from the one module of the chapters that is called `module`."""
+    """Return the lesson's function with this name, from the only chapter module called `module`."""
     for room in LESSONS:
         try:
-            found = import_module(f"hdrlab.{room}.{module}")
+            module_found = import_module(f"hdrlab.{room}.{module}")
         except ModuleNotFoundError:
             continue
-        return getattr(found, name, None)
+        return getattr(module_found, name, None)
     return None
 
 
@@ -58,26 +58,28 @@ NAMES = [f"{module}.{name}" for module, name in PAIRS]
 
 @pytest.mark.parametrize(("module", "name"), PAIRS, ids=NAMES)
 def test_a_fast_function_has_a_lesson_with_the_same_parameters(module, name):
-    slow, quick = lesson(module, name), getattr(import_module(f"hdrlab.fast.{module}"), name)
+    slow = lesson(module, name)
+    quick = getattr(import_module(f"hdrlab.fast.{module}"), name)
     assert slow is not None, f"fast.{module}.{name} has no lesson"
-    ours, theirs = inspect.signature(quick).parameters, inspect.signature(slow).parameters
+    ours = inspect.signature(quick).parameters
+    theirs = inspect.signature(slow).parameters
     assert list(ours) == list(theirs)
-    for one in ours:
-        assert ours[one].kind == theirs[one].kind, one
+    for parameter in ours:
+        assert ours[parameter].kind == theirs[parameter].kind, parameter
         if not callable(
-            ours[one].default
+            ours[parameter].default
         ):  # a lesson takes the filter that is to be fast as an argument
-            assert ours[one].default == theirs[one].default, one
+            assert ours[parameter].default == theirs[parameter].default, parameter
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("module", "name"), PAIRS, ids=NAMES)
 def test_a_fast_function_returns_the_same_as_its_lesson(module, name, kind):
     make, tolerance = MAKERS[f"{module}.{name}"]
-    given = make(kind, np.random.default_rng(7))
-    if given is None:  # the maker says why such input has no meaning here
+    inputs = make(kind, np.random.default_rng(7))
+    if inputs is None:  # the maker says why such input has no meaning here
         return
-    args, named = given
+    args, named = inputs
     compare(
         lesson(module, name),
         getattr(import_module(f"hdrlab.fast.{module}"), name),

@@ -30,7 +30,7 @@ def photographs(kind, rng, frames=3):
 
 
 def luminance(kind, rng):
-    """Return a luminance (H, W) float32 of a kind: `clipped` has areas at one top, `deep` 12 decades."""
+    """Return luminance (H, W) float32 of a kind: `clipped` has areas at the maximum, `deep` 12 decades."""
     shape = {"tiny": (1, 3), "row": (1, 24)}.get(kind, (23, 37))
     if kind == "flat":
         return np.full(shape, 0.7, np.float32)
@@ -39,9 +39,12 @@ def luminance(kind, rng):
 
 
 def compare(slow, quick, args, named, tolerance):
-    """Assert that both functions answer the same, or both refuse; input stays as it was."""
+    """Assert that both functions return the same or raise the same error, and do not change their
+    input.
+    """
     before = deepcopy((args, named))
-    expected, came = (_answer(one, *deepcopy((args, named))) for one in (slow, quick))
+    expected = _answer(slow, *deepcopy((args, named)))
+    came = _answer(quick, *deepcopy((args, named)))
     _same(came, expected, tolerance)
     quick_given = deepcopy((args, named))
     _answer(quick, *quick_given)
@@ -59,23 +62,26 @@ def _answer(function, args, named):
 def _same(came, expected, tolerance):
     if isinstance(expected, dict):
         assert list(came) == list(expected)
-        came, expected = list(came.values()), list(expected.values())
+        came = list(came.values())
+        expected = list(expected.values())
     if isinstance(expected, tuple | list):
         assert isinstance(came, tuple | list) and len(came) == len(expected), (came, expected)
-        each = tolerance if isinstance(tolerance, tuple) else [tolerance] * len(expected)
-        for one, other, allowed in zip(came, expected, each, strict=True):
-            _same(one, other, allowed)
+        tolerances = tolerance if isinstance(tolerance, tuple) else [tolerance] * len(expected)
+        for value, other, allowed in zip(came, expected, tolerances, strict=True):
+            _same(value, other, allowed)
         return
     if expected is None or callable(expected) or isinstance(expected, str):
         assert came is expected or came == expected or callable(expected)
         return
-    a, b = np.asarray(came), np.asarray(expected)
+    a = np.asarray(came)
+    b = np.asarray(expected)
     assert a.shape == b.shape, (a.shape, b.shape)
     assert a.dtype == b.dtype, (a.dtype, b.dtype)
     if b.dtype.kind not in "biuf":
         assert np.array_equal(a, b)
         return
-    a, b = a.astype(np.float64), b.astype(np.float64)
+    a = a.astype(np.float64)
+    b = b.astype(np.float64)
     same = (a == b) | (np.isnan(a) & np.isnan(b))
     finite = np.abs(b[np.isfinite(b)])
     allowed = tolerance * max(1.0, finite.max(initial=0.0))

@@ -1,4 +1,6 @@
-"""fast.blur: a coarse grid's kernel is the Gaussian to 0.2 % of its peak; below sigma = 4 to float32."""
+"""fast.blur: the kernel of the coarse grid is a Gaussian within 0.2 % of its peak; below sigma = 4
+within float32.
+"""
 
 from pairs import luminance
 

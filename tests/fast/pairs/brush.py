@@ -5,7 +5,7 @@ from pairs import luminance
 
 def tonemap(kind, rng):
     if kind == "colour":
-        return None  # operators see luminance alone
+        return None  # operators get only luminance
     return (luminance(kind, rng),), {"bins": 64, "limit": 1.5} if kind == "gray" else {}
 
 

@@ -1,4 +1,4 @@
-"""fast.chiu: narrow blurs to float32, wide ones to 0.2 % of their peak."""
+"""fast.chiu: narrow blurs within float32, wide ones within 0.2 % of their peak."""
 
 import numpy as np
 

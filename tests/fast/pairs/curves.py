@@ -1,4 +1,6 @@
-"""fast.curves: the lesson's own curves, to the last bit but for the powers of whole and cut rows."""
+"""fast.curves: the lesson's own curves, equal to the last bit except for powers of whole and cut
+rows.
+"""
 
 from pairs import luminance
 

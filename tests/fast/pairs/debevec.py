@@ -1,4 +1,4 @@
-"""Samples and photographs for gsolve: what no two exposures show is refused by both."""
+"""Samples and photos for gsolve; both functions refuse levels that no two exposures connect."""
 
 import numpy as np
 

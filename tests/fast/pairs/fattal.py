@@ -13,7 +13,7 @@ def scene(kind, rng):
 
 def tonemap(kind, rng):
     if kind == "colour":
-        return None  # operators see luminance alone
+        return None  # operators get only luminance
     return (scene(kind, rng),), {"beta": 0.8} if kind == "gray" else {}
 
 

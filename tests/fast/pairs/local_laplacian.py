@@ -1,4 +1,4 @@
-"""fast.local_laplacian: to float32, with details kept, raised, and edges left."""
+"""fast.local_laplacian: within float32, with details kept, raised, and edges unchanged."""
 
 import numpy as np
 

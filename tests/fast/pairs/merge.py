@@ -14,7 +14,9 @@ def bracket(kind, rng):
     if kind == "colour":
         images[:, 3:9, 5:9, 0] = 255  # one channel clipped in every frame
         g = np.stack([g, responses.true_g("gamma", n), g + 0.3], axis=-1)
-    images[:, :1, :2], images[-1, :1, 1] = 0, n - 1  # dark; from dark to clipped
+    # dark; from dark to clipped
+    images[:, :1, :2] = 0
+    images[-1, :1, 1] = n - 1
     return (
         images,
         [4.0, 1.0, 0.25, 16.0, 64.0],

@@ -1,4 +1,7 @@
-"""Exposure fusion. Where every photograph is flat or gray all weigh alike: no rounding decides."""
+"""Exposure fusion.
+
+If every photo is flat or gray, all photos have the same weight, whatever the rounding.
+"""
 
 import numpy as np
 
@@ -17,10 +20,8 @@ def fused(kind, rng):
 
 
 def added(kind, rng):
-    W, detail = (
-        photographs(kind, rng)[0],
-        np.moveaxis(np.atleast_3d(photographs(kind, rng)[1]), -1, 0),
-    )
+    W = photographs(kind, rng)[0]
+    detail = np.moveaxis(np.atleast_3d(photographs(kind, rng)[1]), -1, 0)
     W = np.float32(np.atleast_3d(W)[..., 0] / 255)
     return (np.ones(detail.shape, np.float32), W, np.float32(detail)), {}
 

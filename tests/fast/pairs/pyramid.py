@@ -1,4 +1,4 @@
-"""Image pyramids: planes where there are colours, each kind of side."""
+"""Image pyramids: planes if there are colors, and all kinds of sides."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def image(kind, rng):
     return np.minimum(luminance(kind, rng), 50)
 
 
-def one(kind, rng):
+def make_image(kind, rng):
     return (image(kind, rng),), {}
 
 
@@ -34,7 +34,7 @@ def details(kind, rng):
 
 
 PAIRS = {
-    "reduce": (one, 1e-6),
+    "reduce": (make_image, 1e-6),
     "interpolate": (finer, 1e-6),
     "gaussian": (several, 1e-6),
     "laplacian": (several, 1e-6),

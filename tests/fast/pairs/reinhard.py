@@ -1,4 +1,6 @@
-"""fast.reinhard: float32 beside float64; rounding may tip a response at the threshold of a neighbourhood."""
+"""fast.reinhard: float32 compared with float64; rounding may change a response at the neighborhood
+threshold.
+"""
 
 from hdrlab.tonemap import reinhard
 from pairs import luminance
@@ -15,7 +17,7 @@ def scaled(kind, rng):
 
 
 def held_back(kind, rng):
-    """Scaled luminance, what it is held back by, and a white for some kinds."""
+    """Scaled luminance, the adaptation luminance, and a white for some kinds."""
     if kind == "colour":
         return None
     Lm = reinhard.scale_to_key(luminance(kind, rng))

@@ -6,13 +6,13 @@ from pairs import luminance
 
 def tonemap(kind, rng):
     if kind == "colour":
-        return None  # operators see luminance alone
+        return None  # operators get only luminance
     return (luminance(kind, rng),), {"bins": 7, "white": 1e4} if kind == "gray" else {}
 
 
 def display(kind, rng):
     if kind == "colour":
-        return None  # operators see luminance alone
+        return None  # operators get only luminance
     L = luminance(kind, rng)
     return (L, *ward.curve(L)), {"black": 1.0, "white": 100.0}
 
