@@ -60,7 +60,8 @@ def test_a_larger_frame_shows_the_same_room_in_more_detail(room):
 
 
 def test_edges_are_smooth_and_surfaces_are_not():
-    crude, fine = (luminance(view.room((128, 192), samples=s)) for s in (1, 4))
+    crude = luminance(view.room((128, 192), samples=1))
+    fine = luminance(view.room((128, 192), samples=4))
     smooth = luminance(view.room((128, 192)))
     assert norm(np.log(smooth / fine)) < 0.6 * norm(np.log(crude / fine))
     floor = np.log(smooth[100:, 130:])
@@ -69,14 +70,18 @@ def test_edges_are_smooth_and_surfaces_are_not():
 
 def test_the_sun_is_the_brightest_spot_and_the_unlit_room_the_darkest(room):
     L = luminance(room)
-    (y, x), (row, column) = (np.unravel_index(k, L.shape) for k in (L.argmax(), L.argmin()))
+    y, x = np.unravel_index(L.argmax(), L.shape)
+    row, column = np.unravel_index(L.argmin(), L.shape)
     assert 25 < y < 45 and 110 < x < 130  # in the upper right pane
     assert 35 < row < 90 and 40 < column < 62  # through the door
 
 
 def test_without_the_sun_the_floor_is_dim_and_without_the_lamp_its_corner(room):
-    overcast, unlit = view.room((128, 192), sun=0), view.room((128, 192), lamp=0)
-    L, dim, dark = (luminance(E) for E in (room, overcast, unlit))
+    overcast = view.room((128, 192), sun=0)
+    unlit = view.room((128, 192), lamp=0)
+    L = luminance(room)
+    dim = luminance(overcast)
+    dark = luminance(unlit)
     assert (L / dim)[95:110, 90:105].mean() > 3 > 1.05 > (L / dim)[50:80, 5:25].mean()
     assert (L / dark)[20:40, 165:180].mean() > 2
     assert overcast.min() > 0 and np.all(L >= 0.999 * dim) and np.all(L >= 0.999 * dark)
@@ -94,9 +99,10 @@ def test_light_adds_up():
 
 @pytest.mark.parametrize("name", subjects.SUBJECTS)
 def test_the_stored_subjects_equal_the_computed_ones(name):
-    found, made = embedded.SUBJECTS[name](), subjects.SUBJECTS[name]()
-    assert np.allclose(found.E, made[..., :3], rtol=1e-3)  # half floats hold 11 bits
-    assert np.mean(found.mask != (made[..., 3] > 0.99)) < 1e-3
+    computed = embedded.SUBJECTS[name]()
+    made = subjects.SUBJECTS[name]()
+    assert np.allclose(computed.E, made[..., :3], rtol=1e-3)  # half floats hold 11 bits
+    assert np.mean(computed.mask != (made[..., 3] > 0.99)) < 1e-3
 
 
 def test_the_stored_room_equals_the_computed_one():
@@ -139,7 +145,8 @@ def test_decades_count_powers_of_ten():
 
 def test_decades_ignore_black_and_outlying_pixels():
     E = np.geomspace(1, 100, 10_000).reshape(100, 100)
-    E[0, :3], E[0, 3] = 0, 1e9
+    E[0, :3] = 0
+    E[0, 3] = 1e9
     assert np.isclose(scenes.decades(E), 2, atol=0.02)
 
 
@@ -155,7 +162,7 @@ def test_decades_raise_an_error_for_images_without_a_range(E, tail):
 
 
 def integrate(point, n, window, steps=400):
-    """Return F of a bright rectangle by adding up its small squares."""
+    """Return F of a bright rectangle by summing over small squares."""
     (x0, y0, z), (x1, y1, _) = window
     x, y = np.meshgrid(
         *(
@@ -193,9 +200,8 @@ def test_a_window_gives_no_light_to_its_own_wall():
 
 def test_the_light_of_a_globe_falls_with_the_square_of_its_distance():
     P = np.float32([[0, 0], [0, 0], [0, 0]])
-    near, far = (
-        illumination.from_globe(P, interior.FLOOR, textures.rgb(0, d, 0), 0.1)[0] for d in (1, 2)
-    )
+    near = illumination.from_globe(P, interior.FLOOR, textures.rgb(0, 1, 0), 0.1)[0]
+    far = illumination.from_globe(P, interior.FLOOR, textures.rgb(0, 2, 0), 0.1)[0]
     assert np.isclose(near, 0.01) and np.isclose(far, 0.0025)
     assert (
         illumination.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
@@ -207,7 +213,8 @@ def test_a_line_of_sight_leaves_a_box_where_it_should():
     t, face = interior.leave(
         np.zeros((3, 1), np.float32), d, illumination.Box((-1, -2, -1), (1, 2, 4))
     )
-    assert np.allclose(t, [4, 2, 1 / 3]) and face.tolist() == [
+    assert np.allclose(t, [4, 2, 1 / 3])
+    assert face.tolist() == [
         interior.BACK,
         interior.FLOOR,
         interior.RIGHT,
@@ -229,10 +236,14 @@ def test_a_distant_texture_shows_its_mean():
 
 def test_a_near_texture_shows_its_pixels():
     rho = textures.texture("gravel")[0]
-    row, column = np.array([5, 100, 300]), np.array([7, 200, 40])
-    u, v = (column + 0.5) / 512, (row + 0.5) / 512
-    found = textures.look_up("gravel", np.float32(u), np.float32(v), np.full(3, 1e-5, np.float32))
-    assert np.allclose(found[0], rho[row, column, 0], atol=1e-3)
+    row = np.array([5, 100, 300])
+    column = np.array([7, 200, 40])
+    u = (column + 0.5) / 512
+    v = (row + 0.5) / 512
+    texture_value = textures.look_up(
+        "gravel", np.float32(u), np.float32(v), np.full(3, 1e-5, np.float32)
+    )
+    assert np.allclose(texture_value[0], rho[row, column, 0], atol=1e-3)
 
 
 def test_an_edge_covers_half_of_the_pixel_that_it_crosses():

@@ -25,13 +25,13 @@ pytestmark = pytest.mark.scenes
 
 DECADES = {"chapel": 5, "workshop": 5, "street": 6}
 FILES = {name: places.FOLDER / f"{name}.exr" for name in scenes.PLACES}
-each = pytest.mark.parametrize("name", scenes.PLACES)
+for_each_place = pytest.mark.parametrize("name", scenes.PLACES)
 
 
 # What is shipped
 
 
-@each
+@for_each_place
 def test_a_place_is_512_by_768_finite_and_positive(name):
     place = scenes.layers(name)
     assert place.radiance.shape == place.mover.shape == (512, 768, 3)
@@ -41,7 +41,7 @@ def test_a_place_is_512_by_768_finite_and_positive(name):
     assert place.mask.min() == 0 and place.mask.max() == 1
 
 
-@each
+@for_each_place
 def test_a_place_spans_its_decades_but_for_a_thousandth_of_the_darkest_pixels(name):
     L = luminance(getattr(scenes, name)()).astype(np.float64)
     low, high = np.quantile(L, [0.001, 0.9999])
@@ -54,7 +54,7 @@ def test_the_files_are_half_floats_and_together_under_eight_megabytes():
     assert all(set(exr.read_dtypes(file)) == {"float16"} for file in FILES.values())
 
 
-@each
+@for_each_place
 def test_a_reader_of_single_part_exr_files_sees_the_radiance(name):
     assert np.array_equal(exr.read(FILES[name]), scenes.layers(name).radiance)
 
@@ -62,9 +62,10 @@ def test_a_reader_of_single_part_exr_files_sees_the_radiance(name):
 # At other sizes
 
 
-@each
+@for_each_place
 def test_a_smaller_place_has_the_mean_of_the_larger_ones_areas(name):
-    whole, small = scenes.layers(name), scenes.layers(name, (128, 192))
+    whole = scenes.layers(name)
+    small = scenes.layers(name, (128, 192))
     for layer, less in zip(whole, small, strict=True):
         mean = (
             layer.reshape(128, 4, 192, 4, -1)
@@ -79,7 +80,8 @@ def test_a_place_at_any_shape_keeps_its_pixels_square(shape):
     E = scenes.street(shape)
     assert E.shape == (*shape, 3) and np.isfinite(E).all() and E.min() > 0
     pixel = min(512 / shape[0], 768 / shape[1])
-    top, left = (512 - pixel * shape[0]) / 2, (768 - pixel * shape[1]) / 2
+    top = (512 - pixel * shape[0]) / 2
+    left = (768 - pixel * shape[1]) / 2
     inner = scenes.street()[
         int(np.ceil(top)) : int(512 - top), int(np.ceil(left)) : int(768 - left)
     ]
@@ -100,14 +102,14 @@ def test_a_place_that_does_not_exist_raises_an_error():
 # The visitor
 
 
-@each
+@for_each_place
 def test_a_visitor_outside_the_frame_does_not_change_the_scene(name):
     place = scenes.layers(name, (128, 192))
     assert np.array_equal(scenes.compose(place, (0, 192)), place.radiance)
     assert np.array_equal(scenes.compose(place, (-500, 0)), place.radiance)
 
 
-@each
+@for_each_place
 def test_a_visitor_only_changes_the_pixels_that_it_covers(name):
     place = scenes.layers(name, (256, 384))
     changed = ~np.isclose(scenes.compose(place, (3, -20)), place.radiance, rtol=1e-3).all(axis=2)
@@ -122,7 +124,7 @@ def test_a_visitor_only_changes_the_pixels_that_it_covers(name):
     )
 
 
-@each
+@for_each_place
 def test_a_visitor_is_lit_by_the_place(name):
     place = scenes.layers(name)
     body = luminance(place.mover)[place.mask > 0.99]
@@ -139,7 +141,7 @@ def test_an_offset_must_be_two_integers(offset):
         scenes.compose(scenes.layers("street", (16, 24)), offset)
 
 
-@each
+@for_each_place
 def test_depth_is_small_near_the_camera_and_large_far_away(name):
     z = scenes.layers(name).depth
     assert z[-1].max() < np.median(z) + 5 and 0.3 < z.min() < 5 and z.max() > 10
@@ -148,9 +150,10 @@ def test_depth_is_small_near_the_camera_and_large_far_away(name):
 def test_the_street_is_darkest_in_its_alley():
     L = luminance(scenes.street())
     y, x = np.unravel_index(np.argsort(L, axis=None)[:100], L.shape)
-    assert (
-        y.min() > 230 and y.max() < 400 and x.min() > 100 and x.max() < 170
-    )  # behind the arch on the left
+    assert y.min() > 230
+    assert y.max() < 400
+    assert x.min() > 100
+    assert x.max() < 170  # behind the arch on the left
     assert scenes.layers("street").depth[y, x].min() > 10
 
 
@@ -162,14 +165,13 @@ def test_layers_survive_a_round_trip_through_a_file(tmp_path):
     shapes_of = {"a": (9, 14, 3), "b": (9, 14), "c": (9, 14, 4)}
     layers = {name: rng.random(shape).astype(np.float16) for name, shape in shapes_of.items()}
     write_layers(tmp_path / "layers.exr", layers)
-    found = read_layers(tmp_path / "layers.exr")
-    assert list(found) == list(layers) and all(
-        np.array_equal(found[name], layers[name]) for name in layers
-    )
+    read_back = read_layers(tmp_path / "layers.exr")
+    assert list(read_back) == list(layers)
+    assert all(np.array_equal(read_back[name], layers[name]) for name in layers)
 
 
 @pytest.mark.parametrize(
-    ("layers", "said"),
+    ("layers", "message"),
     [
         ({"a": np.ones((3, 4)), "b": np.ones((4, 3))}, "layers of one size"),
         ({"a": np.ones((3, 4, 2))}, "1, 3 or 4 channels"),
@@ -178,8 +180,8 @@ def test_layers_survive_a_round_trip_through_a_file(tmp_path):
         ({"a": np.full((3, 4), -1.0)}, "in 0 to 65504"),
     ],
 )
-def test_layers_that_a_file_cannot_hold_raise_an_error(tmp_path, layers, said):
-    with pytest.raises(ValueError, match=said):
+def test_layers_that_a_file_cannot_hold_raise_an_error(tmp_path, layers, message):
+    with pytest.raises(ValueError, match=message):
         write_layers(tmp_path / "layers.exr", layers)
     assert not list(tmp_path.iterdir())
 
@@ -196,12 +198,14 @@ def test_a_file_of_layers_that_is_cut_short_raises_an_error(tmp_path):
 
 
 def corners_with_area(mesh):
-    """Return the corners of the triangles that are no mere lines, as those in the point of an arch are."""
-    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    """Return the corners of the triangles with an area; those at the tip of an arch have none."""
+    a = mesh.vertices[mesh.faces[:, 0]]
+    b = mesh.vertices[mesh.faces[:, 1]]
+    c = mesh.vertices[mesh.faces[:, 2]]
     return mesh.faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-12]
 
 
-@each
+@for_each_place
 def test_a_model_is_made_of_triangles_and_materials_that_exist(name):
     place = render.model(name)
     emitting = {material for light in place.lights.values() for material in light.glow}
@@ -216,13 +220,15 @@ def test_a_model_is_made_of_triangles_and_materials_that_exist(name):
 
 
 def outward(mesh):
-    """Return whether the normals of a solid about the origin point away from it."""
+    """Return whether the normals of a solid around the origin point away from it."""
     return ((mesh.vertices - mesh.vertices.mean(axis=0)) * mesh.normals).sum(axis=1) > -1e-9
 
 
 def volume(mesh):
     """Return the volume inside a mesh, positive where its triangles turn outwards."""
-    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    a = mesh.vertices[mesh.faces[:, 0]]
+    b = mesh.vertices[mesh.faces[:, 1]]
+    c = mesh.vertices[mesh.faces[:, 2]]
     return np.einsum("fk,fk->", a, np.cross(b, c)) / 6
 
 
@@ -244,7 +250,9 @@ def test_a_turn_by_ninety_degrees_takes_an_axis_to_the_next():
 
 def area(mesh):
     """Return the area of a mesh that lies in the plane z = 0."""
-    a, b, c = (mesh.vertices[mesh.faces[:, k]][:, :2] for k in range(3))
+    a = mesh.vertices[mesh.faces[:, 0]][:, :2]
+    b = mesh.vertices[mesh.faces[:, 1]][:, :2]
+    c = mesh.vertices[mesh.faces[:, 2]][:, :2]
     return (
         np.abs(np.cross(np.pad(b - a, ((0, 0), (0, 1))), np.pad(c - a, ((0, 0), (0, 1))))[:, 2]) / 2
     ).sum()
@@ -280,27 +288,24 @@ def test_the_slide_of_a_projector_is_upright_and_as_large_as_its_pane():
 
 def test_each_spot_of_sunlight_has_a_texel_to_itself_with_its_radiance():
     rng = np.random.default_rng(3)
-    P, E = rng.random((11, 3)), rng.random((11, 3))
-    mesh, data = (
-        relay.squares(P, np.tile([0.0, 0, 1], (11, 1)), np.full(11, 0.1)),
-        relay.chart(E)["data"],
-    )
+    P = rng.random((11, 3))
+    E = rng.random((11, 3))
+    mesh = relay.squares(P, np.tile([0.0, 0, 1], (11, 1)), np.full(11, 0.1))
+    data = relay.chart(E)["data"]
     middle = mesh.uv.reshape(11, 4, 2).mean(axis=1)
-    row, column = (
-        ((1 - middle[:, 1]) * len(data)).astype(int),
-        (middle[:, 0] * len(data)).astype(int),
-    )
+    row = ((1 - middle[:, 1]) * len(data)).astype(int)
+    column = (middle[:, 0] * len(data)).astype(int)
     assert np.allclose(data[row, column], E)
     assert np.allclose(mesh.vertices.reshape(11, 4, 3).mean(axis=1), P + [0, 0, 0.002])
 
 
 def test_windows_with_a_common_texture_are_separate_lamps():
-    """One mesh of them all would have several places for each texel, of which Mitsuba finds but one."""
+    """A single mesh of all would have several places for each texel, and Mitsuba would find only one."""
     place = render.model("street")
     light = place.lights["windows"]
     names = [name for name, _ in tracer.solids(place.parts, light)]
     for name, glow in light.glow.items():
-        panes = sum(each == name for each, _ in place.parts)
+        panes = sum(texture == name for texture, _ in place.parts)
         assert names.count(name) == (1 if isinstance(glow, tuple) else panes)
     assert names.count("road") == 1 and len(names) > 40
 
@@ -309,7 +314,7 @@ def test_windows_with_a_common_texture_are_separate_lamps():
 
 
 def noisy(rng):
-    """Return a scene of two surfaces under a gradient of light, and two halves of it with much noise."""
+    """Return a scene of two surfaces under a gradient of light, and two noisy halves of its samples."""
     y, x = np.mgrid[:48, :72] / 48
     rho = np.where(x < 0.7, 0.2, 0.6)[..., None] * np.ones(3)
     E = rho * (1 + 3 * y)[..., None]
@@ -320,7 +325,8 @@ def noisy(rng):
 def test_denoising_removes_most_of_the_noise_and_keeps_the_light():
     E, rho, guides, A, B = noisy(np.random.default_rng(0))
     clean = rho * denoise.denoise(A, B, rho, guides)
-    before, after = (np.sqrt(np.mean((each / E - 1) ** 2)) for each in ((A + B) / 2, clean))
+    before = np.sqrt(np.mean((((A + B) / 2) / E - 1) ** 2))
+    after = np.sqrt(np.mean((clean / E - 1) ** 2))
     assert after < before / 5
     assert abs(np.mean(clean / E) - 1) < 0.03
 
@@ -335,7 +341,8 @@ def test_denoising_does_not_cross_an_edge_between_surfaces():
 
 
 def test_fireflies_are_removed():
-    A, B = np.ones((9, 9, 3)), np.ones((9, 9, 3))
+    A = np.ones((9, 9, 3))
+    B = np.ones((9, 9, 3))
     A[4, 4] = 500
     assert denoise.believed(A, B).max() == 2 and np.array_equal(denoise.believed(B, A), B)
 
@@ -374,10 +381,10 @@ def test_a_height_that_cannot_be_halved_twice_raises_an_error(height):
 def test_rounds_are_averaged_and_clipped_to_the_range_of_half_floats():
     first = {"radiance": np.float32([[[0, 2, 90_000]]]), "mover": np.zeros((1, 1, 4), np.float32)}
     second = {"radiance": np.float32([[[0, 4, 90_000]]]), "mover": np.ones((1, 1, 4), np.float32)}
-    found = render.mean([first, second])
-    assert found["radiance"].tolist() == [[[render.DIMMEST, 3, exr.LARGEST_HALF]]]
-    assert (found["mover"] == 0.5).all()
-    assert all(layer.dtype == np.float32 for layer in found.values())
+    mean = render.mean([first, second])
+    assert mean["radiance"].tolist() == [[[render.DIMMEST, 3, exr.LARGEST_HALF]]]
+    assert (mean["mover"] == 0.5).all()
+    assert all(layer.dtype == np.float32 for layer in mean.values())
 
 
 def test_averaging_no_rounds_raises_an_error():
@@ -395,9 +402,12 @@ mitsuba = pytest.mark.skipif(
     ("name", "corner"), [("chapel", (180, 320)), ("workshop", (240, 440)), ("street", (200, 560))]
 )
 def test_rendering_again_reproduces_the_shipped_scene(name, corner):
-    """A part of the picture, by a third of the paths: means of 8 x 8 pixels, for single ones are noisy."""
+    """A part of the image, with a third of the paths: means of 8 x 8 pixels, because single ones are
+    noisy.
+    """
     part = tuple(slice(start, start + size) for start, size in zip(corner, (48, 72), strict=True))
-    mi, place = render.mitsuba("scalar_rgb"), render.model(name)
+    mi = render.mitsuba("scalar_rgb")
+    place = render.model(name)
     frame = render.Frame(512, 768, *part)
     E = render.radiance(mi, place, place.parts, frame, 32, 1).astype(np.float32)
     shipped = scenes.layers(name)

@@ -64,15 +64,15 @@ def test_an_invalid_shape_raises_an_error(shape):
 
 
 def test_the_pipeline_gives_no_warning_for_the_photos(taken):
-    found = pipeline.assemble(taken)
-    assert found.doubts == () and found.fallback == "" and found.spread < 0.05
-    assert np.array_equal(found.bracket.times, taken.times)
+    assembly = pipeline.assemble(taken)
+    assert assembly.doubts == () and assembly.fallback == "" and assembly.spread < 0.05
+    assert np.array_equal(assembly.bracket.times, taken.times)
 
 
 def test_the_times_of_the_packaged_photos_agree_with_their_pixels_within_a_fifth_of_a_stop(taken):
-    found = pipeline.assemble(replace(taken, times=np.ones(6)))
+    assembly = pipeline.assemble(replace(taken, times=np.ones(6)))
     assert np.allclose(
-        np.diff(np.log2(found.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2
+        np.diff(np.log2(assembly.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2
     )
 
 
@@ -94,19 +94,19 @@ def test_the_hand_moved_by_up_to_eight_pixels_to_the_side_and_one_up_or_down(sho
 
 
 def test_the_map_spans_six_stops_and_the_feet_are_darker_than_the_front_and_the_floor(assembled):
-    assert (
-        5.5 < scenes.decades(assembled.E) / np.log10(2) < 6.5 and 0.015 < assembled.spread < 0.025
-    )
+    assert 5.5 < scenes.decades(assembled.E) / np.log10(2) < 6.5
+    assert 0.015 < assembled.spread < 0.025
     L = np.log2(luminance(assembled.E))
-    foot, front, floor, post, window = (np.median(L[at]) for at in PLACES)
+    medians = [np.median(L[place]) for place in PLACES]
+    foot, front, floor, post, window = medians
     assert 0.8 < min(front, floor) - foot < 1.5
     assert post - front > 1.5 and window - post > 2  # a black post, in the haze of the window
 
 
 def test_one_small_region_at_the_left_edge_moved(shown):
-    found = pipeline.assemble(shown, ghosts="regions")
-    assert found.moving.max() == 1 and np.mean(found.moving > 0) < 0.005
-    assert np.nonzero(found.moving)[1].max() < 20
+    assembly = pipeline.assemble(shown, ghosts="regions")
+    assert assembly.moving.max() == 1 and np.mean(assembly.moving > 0) < 0.005
+    assert np.nonzero(assembly.moving)[1].max() < 20
 
 
 def test_they_turned_by_a_fifth_of_a_degree_and_auto_keeps_shifts_that_agree_as_well(
@@ -121,7 +121,8 @@ def test_they_turned_by_a_fifth_of_a_degree_and_auto_keeps_shifts_that_agree_as_
 
 def test_the_stated_times_put_the_points_ten_times_further_from_the_curve(shown):
     images = shift(shown.images, mtb.align(shown.images))[..., 1]
-    Z, w = sampling.by_grid(images, 60), weights.hat()
+    Z = sampling.by_grid(images, 60)
+    w = weights.hat()
     off = []
     for times in (1 / np.array([1000, 120, 60, 15, 8, 4]), shown.times):
         g, lE = gsolve(Z, np.log(times), 30, w)
