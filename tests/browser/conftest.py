@@ -1,4 +1,6 @@
-"""Fixtures of `laboratory`: a browser, a page that remembers, a JupyterLab, and axe-core."""
+"""Fixtures of `laboratory`: a browser, a page that records errors and requests, a JupyterLab, and
+axe-core.
+"""
 
 from collections.abc import Callable, Iterator
 from importlib.resources import files
@@ -29,7 +31,7 @@ RUN = """async (part) => {
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
-    """The Chromium without windows shows the same pages in less than half of the processor's time."""
+    """The headless Chromium shows the same pages in less than half of the processor time."""
     try:
         with chromium("chromium-headless-shell", "chromium") as started:
             yield started
@@ -43,7 +45,8 @@ def page(browser: Any) -> Iterator[Any]:
     context = browser.new_context(viewport={"width": 1280, "height": 900}, has_touch=True)
     context.set_default_timeout(PATIENCE)
     page = context.new_page()
-    page.problems, page.requests = [], []
+    page.problems = []
+    page.requests = []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     page.on(
         "console",
@@ -66,13 +69,17 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
 
 @pytest.fixture(scope="session")
 def axe() -> Callable[..., list[str]]:
-    """Return a function that lists what axe-core finds wrong in a part of a page, "#at", or a context."""
+    """Return a function that lists the violations axe-core finds in a part of a page, or in a context."""
     carrier = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed")
     script = (files(carrier) / "axe.min.js").read_text(encoding="utf8")
 
     def violations(page: Any, part: str | dict[str, list[str]]) -> list[str]:
         page.evaluate(script)
-        found = page.evaluate(RUN, part)
-        return [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
+        report = page.evaluate(RUN, part)
+        return [
+            f"{violation['id']}: {node['html'][:200]}"
+            for violation in report
+            for node in violation["nodes"]
+        ]
 
     return violations

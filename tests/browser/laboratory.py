@@ -88,7 +88,7 @@ widget.render({{ model: window.model, el: document.getElementById("at") }});
 
 
 class Absent(Exception):
-    """What must be installed to open a browser is not."""
+    """A program or package that is needed to open a browser is not installed."""
 
 
 class Lab(NamedTuple):
@@ -126,7 +126,7 @@ class Lab(NamedTuple):
         )
 
     def close(self) -> None:
-        """End all kernels: twenty of them, one for each notebook, would fill the memory."""
+        """End all kernels; twenty of them, one per notebook, would fill the memory."""
         for kernel in json.loads(self._ask("GET", "/api/kernels")):
             self._ask("DELETE", f"/api/kernels/{kernel['id']}")
 
@@ -202,7 +202,7 @@ def widget_page(widget: anywidget.AnyWidget) -> str:
     def packed(value: Any) -> Any:
         if isinstance(value, bytes):
             return {"base64": base64.b64encode(value).decode()}
-        return [packed(each) for each in value] if isinstance(value, list) else value
+        return [packed(item) for item in value] if isinstance(value, list) else value
 
     own = set(widget.trait_names(sync=True)) - set(anywidget.AnyWidget.class_trait_names())
     state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
@@ -225,7 +225,7 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
 
 
 def changed_by(page: Any, widget: Any, move: Callable[[], object]) -> None:
-    """Move a control, and wait until the picture is another."""
+    """Move a control, and wait until the picture has changed."""
     before = widget.evaluate(DIGEST)
     move()
     page.wait_for_function(

@@ -59,14 +59,15 @@ def write(page, name, text):
 
 
 def answered(page, name, word):
-    """Return the check's output when it says a word."""
-    checked, written = cell(page, f"check-{name}"), cell(page, f"task-{name}")
+    """Return the output of the check once it contains a word."""
+    checked = cell(page, f"check-{name}")
+    written = cell(page, f"task-{name}")
     output = checked.locator(".hdrlab-check")
     try:
         output.get_by_text(word).first.wait_for(timeout=ANSWER)
     except Exception as error:
-        said = f"{written.inner_text()}\n{checked.inner_text()}"
-        raise AssertionError(f"expected {word!r}, got {said}") from error
+        text = f"{written.inner_text()}\n{checked.inner_text()}"
+        raise AssertionError(f"expected {word!r}, got {text}") from error
     return output
 
 
@@ -75,9 +76,8 @@ def test_a_failing_check_passes_after_the_student_edits_the_cell(lab, page, axe,
         lab.open(page, handout)
         page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
         blank = answered(page, "hat", "no answer")
-        assert (
-            "hat is yours to write" in blank.inner_text() and "0 of 10 points" in blank.inner_text()
-        )
+        assert "hat is yours to write" in blank.inner_text()
+        assert "0 of 10 points" in blank.inner_text()
         lab.until_done(page)
 
         write(page, "task-hat", WRONG)

@@ -20,7 +20,7 @@ LIGHT = np.linspace(0.001, 1000, SHADES.size).reshape(SHADES.shape)
 
 
 def frames(page, count=2):
-    """Wait until what was asked for is painted."""
+    """Wait until the browser has painted the requested frame."""
     for _ in range(count):
         page.evaluate("new Promise(requestAnimationFrame)")
 
@@ -45,13 +45,13 @@ def alt(page):
     return page.locator("canvas").get_attribute("aria-label")
 
 
-def said(page):
+def read_status(page):
     frames(page)
     return page.get_by_role("status").inner_text()
 
 
 def point(page, across, down):
-    """Move the pointer to these shares of the picture."""
+    """Move the pointer to a position, in fractions of the picture's width and height."""
     box = page.locator("canvas").bounding_box()
     page.mouse.move(box["x"] + across * box["width"], box["y"] + down * box["height"])
 
@@ -129,21 +129,24 @@ def test_the_edge_follows_its_slider_the_pointer_and_a_finger(wiper):
 
 def test_the_pixel_under_the_pointer_is_read_out(wiper):
     point(wiper, 0.25, 0.375)  # 150.0, 150.0
-    assert said(wiper) == f"x 150, y 150: positive 70; negative 185; radiance {LIGHT[150, 150]:.3g}"
+    assert (
+        read_status(wiper)
+        == f"x 150, y 150: positive 70; negative 185; radiance {LIGHT[150, 150]:.3g}"
+    )
 
 
 def test_the_arrow_keys_read_pixels_aloud_and_zoom_keeps_the_cross(wiper):
     stage = wiper.get_by_role("application")
     stage.press("ArrowRight")
-    assert said(wiper).startswith("x 300, y 200: positive 150; negative 105; radiance ")
+    assert read_status(wiper).startswith("x 300, y 200: positive 150; negative 105; radiance ")
     stage.press("Shift+ArrowRight")
-    assert said(wiper).startswith("x 372, y 200: ")
+    assert read_status(wiper).startswith("x 372, y 200: ")
     assert wiper.get_by_role("status").get_attribute("aria-live") == "polite"
     for _ in range(5):
         stage.press("+")
     assert "zoom 32" in alt(wiper) and wiper.get_by_role("slider", name="zoom").input_value() == "5"
     stage.press("ArrowLeft")
-    assert said(wiper).startswith("x 371, y 200: ")
+    assert read_status(wiper).startswith("x 371, y 200: ")
     stage.press("0")
     assert "zoom" not in alt(wiper)
 
@@ -178,13 +181,13 @@ def test_the_wheel_zooms_after_a_click_and_scrolls_the_page_before_it(wiper):
     wiper.mouse.wheel(0, -100)
     assert "zoom" not in alt(wiper)
     wiper.get_by_role("application").focus()
-    before = said(wiper)
+    before = read_status(wiper)
     wiper.mouse.wheel(0, -100)
     wiper.wait_for_function(
         "document.querySelector('canvas').getAttribute('aria-label').includes('zoom 2.0')"
     )
     point(wiper, 0.25, 0.25)
-    assert said(wiper) == before  # what was under the pointer stays there
+    assert read_status(wiper) == before  # what was under the pointer stays there
 
 
 def test_two_fingers_zoom_about_their_middle_and_a_zoomed_picture_is_dragged(blinker):
@@ -193,25 +196,22 @@ def test_two_fingers_zoom_about_their_middle_and_a_zoomed_picture_is_dragged(bli
     fingers(blinker, "End")
     assert "zoom 2.0" in alt(blinker)
     point(blinker, 0.5, 0.5)
-    assert said(blinker).startswith("x 300, y 200")
+    assert read_status(blinker).startswith("x 300, y 200")
     blinker.mouse.down()
     point(blinker, 0.25, 0.5)
     blinker.mouse.up()
     point(blinker, 0.5, 0.5)
-    assert said(blinker).startswith("x 375, y 200")
+    assert read_status(blinker).startswith("x 375, y 200")
 
 
 def test_pictures_change_by_their_names_by_space_and_by_themselves(blinker):
     assert np.array_equal(pixels(blinker)[..., 0], SHADES) and alt(blinker) == "Shades, positive"
     blinker.get_by_role("radio", name="negative").check()
-    assert (
-        np.array_equal(pixels(blinker)[..., 0], 255 - SHADES) and alt(blinker) == "Shades, negative"
-    )
+    assert np.array_equal(pixels(blinker)[..., 0], 255 - SHADES)
+    assert alt(blinker) == "Shades, negative"
     blinker.get_by_role("application").press("Space")
-    assert (
-        alt(blinker) == "Shades, positive"
-        and blinker.get_by_role("radio", name="positive").is_checked()
-    )
+    assert alt(blinker) == "Shades, positive"
+    assert blinker.get_by_role("radio", name="positive").is_checked()
     button = blinker.get_by_role("button", name="Blink")
     button.press("Enter")
     for name in ("negative", "positive", "negative"):
@@ -238,7 +238,7 @@ def test_pictures_change_by_their_names_by_space_and_by_themselves(blinker):
     ],
 )
 def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnification, limit):
-    """Within one code: a float32 may round to the next."""
+    """Within one pixel value, because a float32 may round to the next one."""
     map_ = colour.luminance(E) if gray else E
     widget = widgets.brush(
         map_, alt="The room", size=size, magnification=magnification, limit=limit
@@ -252,8 +252,8 @@ def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnifi
     Ld = brush.lens(L, centre, size=size, magnification=magnification, limit=limit)
     window = brush.place_window(L.shape, centre, -(-size // magnification))
     large = [
-        each[window].repeat(magnification, 0).repeat(magnification, 1)[:size, :size]
-        for each in (seen, L)
+        image[window].repeat(magnification, 0).repeat(magnification, 1)[:size, :size]
+        for image in (seen, L)
     ]
     expected = colour.to_8bit(colour.recolour(*large, Ld))
     off = shown[brush.place_window(L.shape, centre, size)].astype(int) - expected.reshape(
@@ -280,7 +280,7 @@ def test_keys_move_the_brush_and_change_it(brushed):
         stage.press(key)
     assert alt(brushed) == "The room, the brush at x 176, y 56, size 96, magnification 2"
     assert brushed.get_by_role("status").get_attribute("aria-live") == "polite"
-    assert said(brushed).startswith("x 176, y 56, size 96, magnification 2: ")
+    assert read_status(brushed).startswith("x 176, y 56, size 96, magnification 2: ")
     for key in ("[", "-"):
         stage.press(key)
     assert alt(brushed) == "The room, the brush at x 176, y 56, size 64"

@@ -50,7 +50,7 @@ SECOND = ["answer two"]
 
 
 def visible(page, text):
-    """Return the visible places of a text: JupyterLab keeps the hidden source of it, too."""
+    """Return the visible elements with a text; JupyterLab also keeps its hidden source."""
     return page.get_by_text(text, exact=True).filter(visible=True)
 
 

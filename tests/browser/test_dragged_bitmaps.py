@@ -43,7 +43,8 @@ def counts_shown(page, offset):
 def drag(page, offset):
     """Press the middle of the bitmap, and drag it by an offset."""
     box = page.locator("canvas").first.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    x = box["x"] + box["width"] / 2
+    y = box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + offset[1] * box["width"] / WIDTH, y + offset[0] * box["height"] / HEIGHT)
@@ -65,7 +66,8 @@ def test_without_exclusion_all_pixels_of_the_overlap_are_compared(dragged):
     dragged.get_by_role("checkbox").uncheck()
     drag(dragged, (4, 6))
     count, total = counts_shown(dragged, (4, 6))
-    fixed, moving = (bits[0] for bits in (LEVELS[0].fixed, LEVELS[0].moving))
+    fixed = LEVELS[0].fixed[0]
+    moving = LEVELS[0].moving[0]
     assert total == (HEIGHT - 4) * (WIDTH - 6)
     assert count == np.sum(fixed[4:, 6:] ^ moving[:-4, :-6])
 

@@ -47,7 +47,8 @@ def drag_to(page, figure, index):
     box = page.locator(".hdrlab-histogram").bounding_box()
     stops = np.log2(figure.times[page.evaluate("window.model.get('at')")] / figure.times[index])
     window = page.locator(".hdrlab-window").bounding_box()
-    x, y = window["x"] + window["width"] / 2, box["y"] + box["height"] / 2
+    x = window["x"] + window["width"] / 2
+    y = box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + stops / np.ptp(figure.span) * box["width"], y, steps=3)

@@ -33,7 +33,9 @@ def points_of(path):
 
 def assert_figure_shows_the_library(page):
     page.evaluate(NEXT_FRAME)
-    alpha, beta, at = (page.evaluate(f"window.model.get('{n}')") for n in ("alpha", "beta", "at"))
+    alpha = page.evaluate("window.model.get('alpha')")
+    beta = page.evaluate("window.model.get('beta')")
+    at = page.evaluate("window.model.get('at')")
     phi = fattal.attenuation(np.abs(STEPS), MEAN, alpha=alpha, beta=beta, noise=0.01)
     expected = LINE[0] + np.append(0, np.cumsum(phi * STEPS))
 
@@ -46,7 +48,8 @@ def assert_figure_shows_the_library(page):
         for bars in page.locator(".hdrlab-steps path.hdrlab-area").all()
     ]
     foot = float(page.locator(".hdrlab-steps path.hdrlab-thin").get_attribute("d")[3:-2])
-    before, after = (foot - top for top in tops)
+    before = foot - tops[0]
+    after = foot - tops[1]
     unit = before[np.argmax(before)] / STEPS.max()
     assert before == pytest.approx(unit * STEPS, abs=2e-4)
     assert after == pytest.approx(unit * phi * STEPS, abs=2e-4)
@@ -63,7 +66,8 @@ def drag(page, handle, right, down):
     """Drag a handle by some pixels of the screen."""
     handle.scroll_into_view_if_needed()
     box = handle.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    x = box["x"] + box["width"] / 2
+    y = box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + right, y + down, steps=3)

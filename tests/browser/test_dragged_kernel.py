@@ -41,26 +41,26 @@ def weights_of(page, row):
 
 
 def assert_figure_shows_the_library(page):
-    at, sigma_s, sigma_r = (
-        page.evaluate(f"window.model.get('{name}')") for name in ("at", "sigma_s", "sigma_r")
-    )
+    at = page.evaluate("window.model.get('at')")
+    sigma_s = page.evaluate("window.model.get('sigma_s')")
+    sigma_r = page.evaluate("window.model.get('sigma_r')")
     expected = bilateral(LINE[None], sigma_s=sigma_s, sigma_r=sigma_r)
     stated = f"Around pixel {at}, "
     page.wait_for_function(f"{STATUS}.startsWith('{stated}')", timeout=PATIENCE)
     page.wait_for_function("() => new Promise(requestAnimationFrame)")
-    near, k, mean = (
-        float(number.replace("−", "-"))
-        for number in re.search(
-            r"up to (\S+) pixels, .* to (\S+)\. .* is (\S+) decades", page.evaluate(STATUS)
-        ).groups()
-    )
+    numbers = re.search(
+        r"up to (\S+) pixels, .* to (\S+)\. .* is (\S+) decades", page.evaluate(STATUS)
+    ).groups()
+    near, k, mean = [float(number.replace("−", "-")) for number in numbers]
     assert k == pytest.approx(float(expected.k[0, at]), abs=0.06)
     assert mean == pytest.approx(float(expected.mean[0, at]), abs=0.006)
     assert heights_of(page, "hdrlab-strong") == pytest.approx(expected.mean[0], abs=1e-3)
     alone = bilateral(LINE[None], sigma_s=sigma_s, sigma_r=1e4)
     assert near == pytest.approx(float(alone.k[0, at]), abs=0.06)
     assert heights_of(page, "hdrlab-is-g hdrlab-dashed") == pytest.approx(alone.mean[0], abs=1e-3)
-    by_place, by_value, both = (weights_of(page, row) for row in range(3))
+    by_place = weights_of(page, 0)
+    by_value = weights_of(page, 1)
+    both = weights_of(page, 2)
     assert both == pytest.approx(by_place * by_value, abs=1e-3)
     assert both.sum() == pytest.approx(float(expected.k[0, at]), abs=0.02)
     assert (both * LINE).sum() / both.sum() == pytest.approx(mean, abs=0.01)
@@ -82,9 +82,9 @@ def drag(page, frame, start, end):
 
 def test_the_dragged_kernel_weighs_and_filters_as_the_library_does(figure):
     assert_figure_shows_the_library(figure)
-    plot, width, height = (
-        figure.get_by_role("slider", name=name) for name in ("Pixel in", "Width of", "Height of")
-    )
+    plot = figure.get_by_role("slider", name="Pixel in")
+    width = figure.get_by_role("slider", name="Width of")
+    height = figure.get_by_role("slider", name="Height of")
     drag(figure, plot, (0.4, 0.5), (0.52, 0.5))
     assert figure.evaluate("window.model.get('at')") == 62
     assert_figure_shows_the_library(figure)
@@ -113,11 +113,11 @@ def test_arrow_keys_and_a_touch_move_the_kernel_and_its_widths(figure):
 
 
 def test_a_pixel_beyond_the_edge_counts_nothing_until_values_are_far_apart_too(figure):
-    """Near in place and near in value: the far side of the step has no weight."""
+    """A pixel is close in place and in value; the other side of the step has no weight."""
     assert weights_of(figure, 2)[60:].max() < 1e-3
-    said = figure.evaluate(STATUS)
+    status = figure.evaluate(STATUS)
     figure.evaluate("window.model.set('sigma_r', 6)")
-    figure.wait_for_function(f"said => {STATUS} !== said", arg=said, timeout=PATIENCE)
+    figure.wait_for_function(f"said => {STATUS} !== said", arg=status, timeout=PATIENCE)
     figure.wait_for_function("() => new Promise(requestAnimationFrame)")
     assert weights_of(figure, 2)[60:].max() > 0.5
 

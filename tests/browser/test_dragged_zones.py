@@ -42,7 +42,8 @@ def drag(page, figure, name, stops):
     """Drag a handle by some stops."""
     box = page.locator(".hdrlab-clip").bounding_box()
     handle = page.locator(f".hdrlab-handle-{name}").bounding_box()
-    x, y = handle["x"] + handle["width"] / 2, box["y"] + box["height"] / 2
+    x = handle["x"] + handle["width"] / 2
+    y = box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + stops / np.ptp(figure.zones) * box["width"], y, steps=3)
@@ -50,8 +51,9 @@ def drag(page, figure, name, stops):
 
 
 def assert_picture_is_the_librarys(page):
-    """Compare the picture, below the white point, whose marks hide some of the rest."""
-    key, white = value_of(page, "key"), value_of(page, "white")
+    """Compare the picture below the white point, whose marks cover the rest."""
+    key = value_of(page, "key")
+    white = value_of(page, "white")
     texts = [f"key {float(f'{key:.2g}'):g}", f"white {float(f'{white:.2g}'):g}"]
     page.wait_for_function(
         f"document.querySelector('canvas').ariaLabel.endsWith('{', '.join(texts)}')",

@@ -32,17 +32,19 @@ def irradiance(Z, t, f, w):
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    """The address of the page on a hostile submission by a hostile student."""
+    """The address of the feedback page for a hostile submission."""
     folder = tmp_path_factory.mktemp("hostile")
     file = Path(folder / "hw2.py")
     file.write_text(HOSTILE)
     hw2 = plan.read().homeworks["hw2"]
     few = hw2._replace(
-        tasks=tuple(one for one in hw2.tasks if one.id in ("hat", "irradiance", "update"))
+        tasks=tuple(task for task in hw2.tasks if task.id in ("hat", "irradiance", "update"))
     )
-    found = grader.grade(file, few, GradingOptions(tier="practice", student=PAYLOAD, secret="salt"))
-    assert "owned" in found.checks[0].message
-    (folder / "feedback.html").write_text(feedback.page(found), encoding="utf8")
+    result = grader.grade(
+        file, few, GradingOptions(tier="practice", student=PAYLOAD, secret="salt")
+    )
+    assert "owned" in result.checks[0].message
+    (folder / "feedback.html").write_text(feedback.page(result), encoding="utf8")
     return (folder / "feedback.html").as_uri()
 
 
@@ -52,7 +54,7 @@ def test_nothing_that_a_student_wrote_runs_or_is_fetched(report, page):
     page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     page.wait_for_timeout(300)
     assert page.evaluate("window.owned") is None
-    assert [one for one in page.requests if not one.startswith("data:")] == [report]
+    assert [request for request in page.requests if not request.startswith("data:")] == [report]
     assert (
         page.evaluate("document.querySelectorAll('script, iframe, svg, a, object, embed').length")
         == 0
@@ -63,7 +65,7 @@ def test_nothing_that_a_student_wrote_runs_or_is_fetched(report, page):
 
 
 def test_a_script_that_came_in_all_the_same_would_not_run(report, page):
-    """The page's own rule against scripts is tried: a script is put in by hand."""
+    """The page's content security policy blocks a script that the test inserts."""
     page.goto(report)
     text = Path(page.url.removeprefix("file://")).read_text(encoding="utf8")
     page.set_content(text.replace("<main>", "<main><script>window.owned = 1</script>"))

@@ -90,7 +90,7 @@ def figure(driver, tmp_path):
         make, dragged = FIGURES[name]
         (tmp_path / "figure.html").write_text(widget_page(make()), "utf-8")
         driver.get((tmp_path / "figure.html").as_uri())
-        wait_until(driver, lambda: said(driver) != "")
+        wait_until(driver, lambda: read_status(driver) != "")
         return driver.find_element("css selector", dragged)
 
     return open_
@@ -100,7 +100,7 @@ def wait_until(driver, condition):
     WebDriverWait(driver, WAIT_SECONDS).until(lambda _: condition())
 
 
-def said(driver):
+def read_status(driver):
     return driver.execute_script(
         "return document.querySelector('[role=status]')?.textContent ?? ''"
     )
@@ -109,22 +109,25 @@ def said(driver):
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_follows_a_key_and_the_pointer(driver, figure, name):
     dragged = figure(name)
-    first = said(driver)
+    first = read_status(driver)
     driver.execute_script(FOCUS, dragged)
     ActionChains(driver).send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT).perform()
-    wait_until(driver, lambda: said(driver) != first)
-    second = said(driver)
+    wait_until(driver, lambda: read_status(driver) != first)
+    second = read_status(driver)
     pointer = ActionChains(driver).move_to_element(dragged).click_and_hold()
     pointer.move_by_offset(-40, 10).move_by_offset(-40, 10).release().perform()
-    wait_until(driver, lambda: said(driver) != second)
+    wait_until(driver, lambda: read_status(driver) != second)
 
 
 @pytest.mark.parametrize("name", ["kernel", "gradients"])
 def test_a_plot_with_dots_is_mostly_paper(driver, figure, name):
-    """WebKit filled it all where a dot had no length."""
+    """WebKit once filled the whole plot if a dot had no length."""
     figure(name)
     page = Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("L")
     for plot in driver.find_elements("class name", "hdrlab-levels"):
-        left, top, width, height = (plot.rect[side] for side in ("x", "y", "width", "height"))
+        left = plot.rect["x"]
+        top = plot.rect["y"]
+        width = plot.rect["width"]
+        height = plot.rect["height"]
         shown = np.asarray(page.crop((left, top, left + width, top + height)))
         assert np.mean(shown > 200) > 0.7

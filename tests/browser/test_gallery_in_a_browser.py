@@ -69,11 +69,11 @@ def focused(page):
     )
 
 
-def tab_to(page, wanted):
-    """Press Tab until the focus is on what `wanted` says yes to."""
+def tab_to(page, locator):
+    """Press Tab until the focus is on the element that `locator` accepts."""
     for _ in range(200):
         page.keyboard.press("Tab")
-        if wanted(focused(page)):
+        if locator(focused(page)):
             return
     raise AssertionError("the keyboard does not reach it")
 

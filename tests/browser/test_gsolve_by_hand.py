@@ -40,7 +40,7 @@ def solve_for_curve(widget, lE, smoothness):
 
 
 def state_shown(page, changed_from=None):
-    """Return the sum of squares as the figure states it, and its lE, once both have changed."""
+    """Return the sum of squares and the lE that the figure shows, once both have changed."""
     if changed_from is not None:
         page.wait_for_function(
             f"(before) => {STATUS} !== before", arg=changed_from, timeout=PATIENCE

@@ -17,7 +17,7 @@ THREE = ["00_welcome.ipynb", "18_all_operators.ipynb", "24_made_of_patches.ipynb
 OTHERS = sorted({path.name for path in FOLDER.glob("*.ipynb")} - set(THREE))
 
 # JupyterLab's own, when it runs without its optional servers.
-# The last one is the extension for JupyterLite, which is installed beside and finds no JupyterLite.
+# The last one comes from the extension for JupyterLite, which does not find JupyterLite.
 NOISE = ("/lsp/status", "/api/terminals", "terminals", "Shared module @jupyterlite/")
 
 
@@ -40,9 +40,12 @@ def until_painted(page, widget):
 
 
 def move_sliders(page, widget, settle=lambda: None):
-    """Move each slider by itself and put it back: in another mode of metering the spot's place is idle."""
+    """Move each slider and put it back; outside of spot metering, the position of the spot has no
+    effect.
+    """
     for slider in widget.get_by_role("slider").all():
-        said, start = slider.get_attribute("aria-valuetext"), slider.input_value()
+        text = slider.get_attribute("aria-valuetext")
+        start = slider.input_value()
         slider.focus()
         back = start == slider.get_attribute("max")
         changed_by(
@@ -51,7 +54,7 @@ def move_sliders(page, widget, settle=lambda: None):
             lambda back=back: [press(page, "Left" if back else "Right") for _ in range(3)],
         )
         settle()
-        assert slider.get_attribute("aria-valuetext") != said
+        assert slider.get_attribute("aria-valuetext") != text
         changed_by(page, widget, lambda slider=slider, start=start: slider.fill(start))
         settle()
 
@@ -68,7 +71,7 @@ def move_play(page, widget):
 
 
 def move_tune(page, widget):
-    """Each slider was put back, so the picture is the one that the cell made: no later cell has a say."""
+    """Each slider was put back, so the picture is again the one that the cell made."""
     before = widget.evaluate(DIGEST)
     move_sliders(page, widget, lambda: until_answered(page, widget))
     for row in widget.get_by_role("radiogroup").all():
@@ -99,13 +102,13 @@ def text_of(control):
 
 
 def until_answered(page, widget):
-    """Wait until the picture is of the last position."""
+    """Wait until the picture shows the last position."""
     controls = widget.locator(".hdrlab-controls > *").all()
-    wanted = ", ".join(f"{name_of(control)} {text_of(control)}" for control in controls)
+    expected = ", ".join(f"{name_of(control)} {text_of(control)}" for control in controls)
     page.wait_for_function(
         """([el, wanted]) => el.querySelector("canvas").getAttribute("aria-label").endsWith(wanted)
             && el.querySelector("[role=status]").textContent === "" """,
-        arg=[widget.element_handle(), wanted],
+        arg=[widget.element_handle(), expected],
         timeout=PATIENCE,
         polling=LOOK,
     )
@@ -173,7 +176,7 @@ def move_shutter(page, widget):
 
 
 def move_screen(page, widget):
-    """Drag to a brighter screen, for the dimmest is shown at first."""
+    """Drag to a brighter screen, because the dimmest is shown at first."""
     changed_by(page, widget, lambda: widget.get_by_role("slider").press("ArrowRight"))
 
 
@@ -196,7 +199,7 @@ def move_handles(page, widget):
 
 
 def move_predict(page, widget):
-    """Ask for the truth: the answers themselves are given in `test_predict_without_a_kernel`."""
+    """Ask for the truth; `test_predict_without_a_kernel` tests the answers."""
     widget.get_by_role("button", name="Show", exact=True).click()
     assert widget.get_by_role("status").last.inner_text().startswith("The truth: ")
 
@@ -257,7 +260,8 @@ class Notebooks:
 def test_the_three_hold_every_kind_of_widget_that_is_not_tested_alone():
     texts = [(FOLDER / name).read_text(encoding="utf8") for name in THREE]
     shown = {kind for text in texts for kind in re.findall(r"widgets\.(\w+)\(", text)}
-    shown |= {"predict"} if any("predict.number(" in text for text in texts) else set()
+    if any("predict.number(" in text for text in texts):
+        shown.add("predict")
     assert shown >= set(MOVES) - TESTED_ALONE
 
 

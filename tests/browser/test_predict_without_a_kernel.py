@@ -11,7 +11,7 @@ from hdrlab.show.widgets import predict
 pytestmark = pytest.mark.browser
 
 LEVELS = np.repeat(np.arange(192, dtype=np.uint8)[None], 120, axis=0)
-ASKED = {
+QUESTIONS = {
     "choice": lambda: predict.choice(
         "Which is brighter?", 1, ["the sky", "the wall"], because="It is white."
     ),
@@ -30,7 +30,7 @@ ASKED = {
 @pytest.fixture
 def ask(page):
     def open_(kind, **traits):
-        widget = ASKED[kind]()
+        widget = QUESTIONS[kind]()
         for name, value in traits.items():
             setattr(widget, name, value)
         open_widget(page, widget)
@@ -53,7 +53,7 @@ def show(page):
     page.get_by_role("button", name="Show", exact=True).click()
 
 
-def given(page):
+def answer_of(page):
     return page.evaluate("window.model.get('given')")
 
 
@@ -86,7 +86,7 @@ def test_a_choice_is_compared_with_the_truth_and_kept(ask):
     page.get_by_role("radio", name="the sky").check()
     check(page)
     assert status(page).startswith("You said: the sky. The truth: the wall. It is white.")
-    assert given(page) == 0 and page.evaluate("window.model.get('done')")
+    assert answer_of(page) == 0 and page.evaluate("window.model.get('done')")
     assert page.get_by_role("button").count() == 0
 
 
@@ -128,7 +128,7 @@ def test_a_curve_is_drawn_by_keys_and_read_aloud(ask):
         page.keyboard.press(key)
     assert page.get_by_role("status").first.inner_text() == "level 0.125: light 0.5"
     check(page)
-    assert [round(y, 3) for y in given(page) if y is not None] == [0.535, 0.535, 0.5]
+    assert [round(y, 3) for y in answer_of(page) if y is not None] == [0.535, 0.535, 0.5]
     assert "and the true one" in page.get_by_role("img").get_attribute("aria-label")
 
 
@@ -150,15 +150,17 @@ def test_the_field_of_a_curve_is_dark_where_jupyterlab_is_and_both_curves_stand_
     assert field < 0.01 and all((line + 0.05) / (field + 0.05) > 3 for line in lines)
 
 
-@pytest.mark.parametrize(("across", "told"), [(0.99, "Yes."), (0.5, "You were 90 pixels away.")])
+@pytest.mark.parametrize(
+    ("across", "messages"), [(0.99, "Yes."), (0.5, "You were 90 pixels away.")]
+)
 def test_a_pixel_is_marked_with_the_pointer_and_its_distance_from_the_answer_is_shown(
-    ask, across, told
+    ask, across, messages
 ):
     page = ask("place")
     box = page.locator("canvas").bounding_box()
     page.mouse.click(box["x"] + across * box["width"], box["y"] + 20)
     check(page)
-    assert status(page).startswith(told)
+    assert status(page).startswith(messages)
 
 
 def test_a_pixel_is_marked_by_keys(ask):
@@ -167,18 +169,18 @@ def test_a_pixel_is_marked_by_keys(ask):
     for key in ("ArrowRight", "Shift+ArrowRight", "ArrowUp"):
         page.keyboard.press(key)
     check(page)
-    assert given(page) == [117, 59]
+    assert answer_of(page) == [117, 59]
 
 
-@pytest.mark.parametrize("kind", ASKED)
+@pytest.mark.parametrize("kind", QUESTIONS)
 def test_showing_is_one_click_and_needs_no_answer(ask, kind):
     page = ask(kind)
     show(page)
     assert status(page).startswith("The truth: ") and "so far" not in status(page)
-    assert given(page) is None and page.evaluate("window.model.get('done')")
+    assert answer_of(page) is None and page.evaluate("window.model.get('done')")
 
 
-@pytest.mark.parametrize("kind", ASKED)
+@pytest.mark.parametrize("kind", QUESTIONS)
 def test_without_an_answer_the_truth_stays_hidden(ask, kind):
     page = ask(kind)
     check(page)
@@ -199,7 +201,7 @@ def test_the_page_counts_what_was_near(ask):
 
 
 @pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("kind", ASKED)
+@pytest.mark.parametrize("kind", QUESTIONS)
 def test_a_question_fits_the_screen_and_axe_finds_nothing_wrong_before_and_after(
     ask, axe, kind, width
 ):

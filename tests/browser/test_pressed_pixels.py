@@ -14,7 +14,8 @@ from hdrlab.show import widgets
 
 pytestmark = pytest.mark.browser
 
-HEIGHT, WIDTH = 64, 96
+HEIGHT = 64
+WIDTH = 96
 GREEN = 1
 CHAPEL = scenes.chapel((HEIGHT, WIDTH))
 TIMES = camera.times_around(CHAPEL, 5, stops=3)
@@ -33,7 +34,7 @@ def pressed(page):
 
 
 def mean_shown(page, y, x):
-    """Return E as the figure states it, once it shows the pixel."""
+    """Return the E that the figure shows, once it shows the pixel."""
     page.wait_for_function(
         f"document.querySelector('canvas').ariaLabel.endsWith('pixel x {x}, y {y}')",
         timeout=PATIENCE,
@@ -66,7 +67,8 @@ def test_arrow_keys_move_the_pixel_and_reach_no_other_key_handler(pressed):
     pressed.get_by_role("application").focus()
     pressed.keyboard.press("ArrowRight")
     pressed.keyboard.press("Shift+ArrowUp")
-    y, x = HEIGHT // 2 - 8, WIDTH // 2 + 1
+    y = HEIGHT // 2 - 8
+    x = WIDTH // 2 + 1
     assert mean_shown(pressed, y, x) == pytest.approx(E[y, x, GREEN], rel=6e-3)
     assert pressed.get_by_role("status").get_attribute("aria-live") == "polite"
     assert pressed.evaluate("window.reached") == []
@@ -78,7 +80,8 @@ def test_a_touch_moves_the_pixel(pressed):
 
 
 def test_each_row_states_the_level_the_weight_and_the_claim_of_its_photo(pressed):
-    y, x = HEIGHT // 2, WIDTH // 2
+    y = HEIGHT // 2
+    x = WIDTH // 2
     rows = pressed.locator(".hdrlab-bar-row:has(button)").all()
     assert len(rows) == len(TIMES)
     hat = weights.hat() / weights.hat().max()

@@ -12,7 +12,8 @@ from hdrlab.show.pages.report import write_report
 
 pytestmark = pytest.mark.browser
 
-HEIGHT, WIDTH = 240, 360
+HEIGHT = 240
+WIDTH = 360
 
 
 @pytest.fixture(scope="module")

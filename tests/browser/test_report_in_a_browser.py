@@ -19,11 +19,13 @@ def report(tmp_path_factory):
         "a_long_name_of_a_photograph_" * 3 + ".jpg",
         "averylongnamewithoutanyplacetobreakit" * 3 + ".jpg",
     ]
-    found = pipeline.assemble(
+    assembly = pipeline.assemble(
         bracket([ramp, 2 * ramp], [1 / 8000, 1 / 4000], names), align="none", response="linear"
     )
-    found = replace(found, doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",))
-    return write_report(tmp_path_factory.mktemp("report"), found, pipeline.develop(found.E))
+    assembly = replace(
+        assembly, doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",)
+    )
+    return write_report(tmp_path_factory.mktemp("report"), assembly, pipeline.develop(assembly.E))
 
 
 @pytest.mark.parametrize("width", [1280, 400])
@@ -31,7 +33,9 @@ def test_the_report_fits_the_screen_and_asks_for_nothing(report, page, width):
     page.set_viewport_size({"width": width, "height": 900})
     page.goto(report.as_uri())
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    assert [one for one in page.requests if not one.startswith("data:")] == [report.as_uri()]
+    assert [request for request in page.requests if not request.startswith("data:")] == [
+        report.as_uri()
+    ]
     assert page.problems == []
 
 

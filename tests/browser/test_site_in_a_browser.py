@@ -83,7 +83,7 @@ def opened(site, page):
 
 
 def open_widget(page, place):
-    """Scroll to a widget's place, wait until it is there instead of its picture, and return it."""
+    """Scroll to a widget, wait until it has replaced its still picture, and return it."""
     place.scroll_into_view_if_needed()
     page.wait_for_function(
         "el => el.dataset.state === 'open'", arg=place.element_handle(), timeout=PATIENCE
@@ -111,12 +111,16 @@ def move(page, widget):
 
 
 def seen(page, canvas):
-    """Return the pixels of a picture on the screen: as it is now, without waiting until it rests."""
+    """Return the pixels of a picture on the screen as it is now, without waiting until it stops
+    changing.
+    """
     return page.screenshot(clip=canvas.bounding_box(), caret="initial")
 
 
 def changed_by(page, widget, move):
-    """Move a control, and wait until what one sees is another: from a folder no canvas can be read."""
+    """Move a control and wait until the screen has changed; scripts cannot read a canvas of a file:
+    page.
+    """
     canvas = widget.locator("canvas, .hdrlab-levels").first
     canvas.scroll_into_view_if_needed()
     before = seen(page, canvas)
@@ -129,18 +133,22 @@ def changed_by(page, widget, move):
 
 
 def assert_it_fits(page, axe):
-    """Look at a page on a wide and on a narrow screen, and leave it wide."""
+    """Check a page on a wide and on a narrow screen, and leave it wide."""
     # axe finds the same wherever it is wide, and in code, half of all elements, the same where it
     # is narrow
-    for width, asked in (
+    for width, part in (
         (400, "html"),
         (1440, None),
         (1280, {"include": ["html"], "exclude": ["pre"]}),
     ):
         page.set_viewport_size({"width": width, "height": 900})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        found = [each for each in axe(page, asked) if not each.startswith(MINOR)] if asked else []
-        assert found == [], width
+        violations = (
+            [violation for violation in axe(page, part) if not violation.startswith(MINOR)]
+            if part
+            else []
+        )
+        assert violations == [], width
 
 
 @pytest.mark.parametrize("name", ["story", *(f"notebooks/{name}" for name in NOTEBOOKS)])
@@ -224,14 +232,14 @@ def test_the_photos_in_figures_keep_their_colors_on_a_dark_page(opened):
 
 
 def test_the_brush_follows_the_pointer_and_the_keys(opened, site):
-    found = [
+    values = [
         file.stem
         for file in (site / "_widgets").glob("*-?*.js")
         if file.stem[:5] != "code-" and '"bins": ' in file.read_text("utf-16")
     ]
-    assert found, "no notebook has a Detail Brush"
-    page = opened(f"notebooks/{found[0].rpartition('-')[0]}")
-    widget = open_widget(page, page.locator(f'[data-name="{found[0]}"]'))
+    assert values, "no notebook has a Detail Brush"
+    page = opened(f"notebooks/{values[0].rpartition('-')[0]}")
+    widget = open_widget(page, page.locator(f'[data-name="{values[0]}"]'))
     changed_by(page, widget, lambda: widget.get_by_role("application").press("ArrowLeft"))
     box = widget.locator("canvas").bounding_box()
     changed_by(
@@ -266,8 +274,8 @@ def test_the_search_finds_the_response_curve_by_its_words_and_its_letters(opened
     page.keyboard.press("Enter")
     first = page.locator("#search-results li a").first
     first.wait_for(timeout=PATIENCE)
-    found = page.locator("#search-results li").all_inner_texts()
-    assert "04 · The response curve: gsolve" in found and len(found) < 30
+    results = page.locator("#search-results li").all_inner_texts()
+    assert "04 · The response curve: gsolve" in results and len(results) < 30
 
 
 def test_a_page_has_its_contents_at_the_right_and_leads_on(opened):
@@ -303,7 +311,7 @@ def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_
     assert folds.count() > 5 and page.locator("main details.hide[open]").count() == 0
     assert page.get_by_text(
         "debevec.system(Z[:20], B, 30"
-    ).is_visible()  # what is the lesson stands open
+    ).is_visible()  # the lesson itself is not folded
     first = folds.first.locator("summary")
     assert first.inner_text() == "Show the code" and first.get_attribute("aria-label") is None
     first.press("Enter")
@@ -319,7 +327,7 @@ def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_
 
 
 def are_shown(page, part):
-    """Return whether what the questions of the page cover is shown, one value for each cell."""
+    """Return for each cell whether its covered answers are shown."""
     return page.locator(part).evaluate_all("(all) => all.map((el) => el.checkVisibility())")
 
 
@@ -335,7 +343,7 @@ def test_no_file_of_the_site_has_an_answer_to_an_exercise(site):
 
 @pytest.fixture
 def asking(site, page):
-    """The first notebook's page, on which nothing has been answered."""
+    """The page of the first notebook, with no question answered."""
     page.goto((site / "notebooks" / "00_welcome.html").as_uri())
     return page
 

@@ -77,7 +77,7 @@ def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_it
 ):
     widget = widgets.play(range(2), mapped, alt="A map")
     open_widget(page, widget)
-    if not live:  # a strip, beside a widget, which brings the style
+    if not live:  # a strip next to a widget, which contains the style
         strip = pictures.strip(mapped, lambda figure: figure, alt="A map", k=[0])
         page.evaluate(
             "html => document.body.insertAdjacentHTML('beforeend', html)", strip._repr_html_()
@@ -100,7 +100,7 @@ def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_it
 
 
 def shaded(k):
-    """Return what is like a photograph: no white paper."""
+    """Return a plot without white paper, like a photo."""
     return np.add.outer(np.arange(40), np.arange(60)).astype(np.uint8) + np.uint8(k)
 
 
@@ -137,8 +137,8 @@ def test_four_pictures_of_a_strip_stand_in_one_row_or_two_by_two(page, draw, row
     tops = "[...document.images].map((image) => Math.round(image.getBoundingClientRect().top))"
     for width, expected in rows.items():
         page.set_viewport_size({"width": width + 16, "height": 900})  # a body has a margin of 8
-        found = page.evaluate(tops)
-        assert [found.count(top) for top in sorted(set(found))] == expected, width
+        positions = page.evaluate(tops)
+        assert [positions.count(top) for top in sorted(set(positions))] == expected, width
 
 
 def test_pictures_side_by_side_are_folded_on_screen_and_open_on_paper(page):
@@ -170,7 +170,7 @@ def test_arrow_keys_move_through_the_steps_and_reach_no_other_key_handler(player
 
 
 def test_the_button_plays_to_the_last_step_and_then_from_the_start(player):
-    """Its clock is turned by hand: on a busy machine a step is gone before it can be looked at."""
+    """The test advances the page's clock; on a busy machine a step would pass before it can be checked."""
     player.evaluate(CLOCK)
     button = player.get_by_role("button")
     button.press("Space")
@@ -278,7 +278,7 @@ def test_a_page_of_the_site_links_to_the_page_with_running_python(tuner):
 
 
 def answer(page, level, at):
-    """Let a kernel answer with a gray square, for a position of the slider."""
+    """Let a simulated kernel answer with a gray square for a slider position."""
     page.evaluate(
         """([runs, at]) => {
             const model = window.model;
@@ -303,7 +303,9 @@ def test_a_stored_image_is_shown_until_python_answers_and_outdated_answers_are_i
     answer(tuner, 30, [200])
     until_level(tuner, 30)
     tuner.get_by_role("slider").press("ArrowLeft")
-    answer(tuner, 90, [150])  # nothing is stored here, so what was asked for earlier shows the way
+    answer(
+        tuner, 90, [150]
+    )  # no picture is stored here, so the answer to the earlier request is shown
     until_level(tuner, 90)
     assert alt(tuner) == "A square, level 150"
 
@@ -345,7 +347,7 @@ def test_an_answer_of_runs_is_painted_to_the_bit(tuner):
 
 
 def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):
-    each = [0.1, 0.3, 0.5, 0.7, 0.9]
+    fractions = [0.1, 0.3, 0.5, 0.7, 0.9]
 
     def shade(down=0.5, right=0.5):
         return square(round(100 * down + 50 * right))
@@ -353,7 +355,12 @@ def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):
     open_widget(
         page,
         widgets.tune(
-            shade, lambda drawn: drawn, alt="Gray", point=("down", "right"), down=each, right=each
+            shade,
+            lambda drawn: drawn,
+            alt="Gray",
+            point=("down", "right"),
+            down=fractions,
+            right=fractions,
         ),
     )
     box = page.locator("canvas").bounding_box()
@@ -382,4 +389,4 @@ def test_axe_names_a_picture_without_words(page, axe):
     page.set_content(
         '<!DOCTYPE html><html lang="en"><title>A page</title><main><img src="data:,"></main>'
     )
-    assert [each.partition(":")[0] for each in axe(page, "main")] == ["image-alt"]
+    assert [violation.partition(":")[0] for violation in axe(page, "main")] == ["image-alt"]

@@ -1,1 +1,3 @@
-"""What several test files use; `from support import malicious_archives` works in every test."""
+"""Modules that several test files use; `from support import malicious_archives` works in every
+test.
+"""

@@ -68,7 +68,7 @@ def adopt_orphans():
 
 
 class _AnswerHandler(socketserver.BaseRequestHandler):
-    """Send the right answer."""
+    """Send the correct answer."""
 
     def handle(self):
         self.request.sendall(b"2")

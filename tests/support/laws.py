@@ -167,7 +167,8 @@ def works_with_levels_that_no_pixel_has(recover, response):
 
 def does_not_change_the_photos(recover, response):
     taken = simulate_bracket(response)
-    images, times = taken.images.copy(), taken.times.copy()
+    images = taken.images.copy()
+    times = taken.times.copy()
     images.setflags(write=False)
     times.setflags(write=False)
     assert np.array_equal(recover(images, times), recover_cached(recover, response))
@@ -234,8 +235,10 @@ def refuses_frames_in_the_wrong_order(recover, response):
 
 def returns_a_rising_curve_or_an_error_for_nonsense(recover, response):
     """No camera takes such photos of one scene: constant, equal, random, or with a falling response."""
-    taken, rng = simulate_bracket(response), np.random.default_rng(0)
-    images, times = taken.images[2:5], taken.times[2:5]
+    taken = simulate_bracket(response)
+    rng = np.random.default_rng(0)
+    images = taken.images[2:5]
+    times = taken.times[2:5]
     rising_then_falling = (255 - np.abs(2 * images.astype(int) - 255)).astype(np.uint8)
     for nonsense in (
         np.full_like(images, 100),

@@ -17,9 +17,9 @@ def read_proc_files(name):
 
 def processes_using(folder):
     """Return the numbers of the processes whose environment names a folder, such as their TMPDIR."""
-    wanted = os.fsencode(folder)
+    folder_bytes = os.fsencode(folder)
     return [
         number
         for number, environment in read_proc_files("environ").items()
-        if wanted in environment
+        if folder_bytes in environment
     ]

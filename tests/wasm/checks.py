@@ -20,7 +20,9 @@ from hdrlab.course.submissions import reader
 def outcomes(id: str, text: str) -> list[list[str]]:
     """Return what each check of a task says about a function, and the recognized mistake."""
     homeworks = plan.read().homeworks.values()
-    homework = next(one for one in homeworks if id in [task.id for task in one.tasks])
+    homework = next(
+        candidate for candidate in homeworks if id in [task.id for task in candidate.tasks]
+    )
     task = next(task for task in homework.tasks if task.id == id)
     sources, problems = closure.extract_sources([closure.Cell(text)], [id])
     modules = tuple(names.imported_numpy_modules(sources.values()))

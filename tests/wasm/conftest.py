@@ -35,7 +35,8 @@ def open_page(site):
 
             def open_in_tab(path):
                 page = context.new_page()
-                page.requests, page.problems = [], []
+                page.requests = []
+                page.problems = []
                 context.on("request", lambda request: page.requests.append(request.url))
                 page.on("pageerror", lambda error: page.problems.append(str(error)))
                 page.goto(f"{site}/{path}")

@@ -42,7 +42,8 @@ def check(box, text):
 
 
 def test_functions_are_checked_in_the_page_and_kept_over_a_reload(site, page):
-    hat, gsolve = box_of(page, "hat"), box_of(page, "gsolve")
+    hat = box_of(page, "hat")
+    gsolve = box_of(page, "gsolve")
     stub = hat.get_by_role("textbox").input_value()
     assert not [url for url in page.requests if "/lite/" in url], "Python waits for a press"
 
@@ -72,7 +73,8 @@ def test_functions_are_checked_in_the_page_and_kept_over_a_reload(site, page):
 
 
 def test_an_endless_loop_leaves_the_page_alive_and_stop_ends_it(page):
-    hat, gsolve = box_of(page, "hat"), box_of(page, "gsolve")
+    hat = box_of(page, "hat")
+    gsolve = box_of(page, "gsolve")
     assert check(hat, RIGHT_HAT) == "hat: 10 of 10 points"
     hat.get_by_role("textbox").fill(ENDLESS_HAT)
     hat.get_by_role("textbox").press("Control+Enter")

@@ -119,5 +119,5 @@ def words_of(text):
 
     pytest adds a line to the message of a plain assertion here, where it rewrites the checks.
     """
-    said, _, _ = text.partition("\nassert ")
-    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", said)
+    names, _, _ = text.partition("\nassert ")
+    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", names)
