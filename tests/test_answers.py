@@ -44,12 +44,12 @@ def files_with_answers(folder):
 @each_lesson
 def test_each_exercise_of_a_lesson_has_one_answer(lesson):
     exercises = "\n".join(texts(lesson)).partition("## Exercises")[2]
-    asked = re.findall(r"^(\d+)\. ", exercises, re.M)
+    numbers = re.findall(r"^(\d+)\. ", exercises, re.M)
     answers = ANSWERS / lesson.name
     assert answers.is_file(), f"expected the answers to {lesson.name} in {answers}"
     answered = re.findall(r"^## Exercise (\d+): \S", "\n".join(texts(answers)), re.M)
-    assert asked
-    assert answered == asked
+    assert numbers
+    assert answered == numbers
 
 
 def test_there_is_a_lesson_for_each_file_with_answers():

@@ -25,7 +25,7 @@ def test_a_file_that_the_page_names_is_there(name):
 
 def test_both_walks_through_the_code_name_more_than_a_dozen_files():
     walks = re.findall(r"## Follow.*?\n```\n(.*?)```", PAGE.read_text(encoding="utf8"), re.DOTALL)
-    assert [len(set(re.findall(r"[\w/]+\.py", one))) > 12 for one in walks] == [True, True]
+    assert [len(set(re.findall(r"[\w/]+\.py", text))) > 12 for text in walks] == [True, True]
 
 
 def test_every_folder_of_the_package_is_on_the_page():
@@ -38,7 +38,7 @@ def test_the_map_of_the_package_fits_one_screen_with_the_lectures_of_the_course_
     import hdrlab
 
     lines = hdrlab.__doc__.splitlines()
-    first, second = (number for number, line in enumerate(lines) if line.startswith("---"))
+    first, second = [number for number, line in enumerate(lines) if line.startswith("---")]
     assert len(lines) <= 36 and second - first > 12
     course = "\n".join(lines[first:second])
     for paper in (

@@ -91,7 +91,7 @@ def numbers_in(prose):
     """Return the numbers of a prose text without its formulas, code and years, some with a unit."""
     prose = INLINE.sub(" ", DISPLAY.sub(" ", CODE_OR_LINK.sub(" ", prose)))
     prose = re.sub(r"(?<=\d),(?=\d{3})", " ", " ".join(prose.split()))  # 1,500 is 1 500
-    return {found for found in NUMBER.findall(prose) if not YEAR.fullmatch(found)} | quantities(
+    return {number for number in NUMBER.findall(prose) if not YEAR.fullmatch(number)} | quantities(
         prose
     )
 
@@ -149,8 +149,8 @@ def test_a_number_of_a_folded_answer_is_computed_on_the_page_or_has_a_source(pat
     known |= {page.stem[:2] for page in NOTEBOOKS}
     before = " ".join([*open_text.split(), *SENTENCES.get(number, {})])
     known |= quantities(before)
-    said = set().union(*(numbers_in(fold) for fold in FOLD.findall(text)))
-    assert said - known == set()
+    numbers = set().union(*(numbers_in(fold) for fold in FOLD.findall(text)))
+    assert numbers - known == set()
 
 
 @each_notebook

@@ -36,10 +36,9 @@ def typed(path):
     ]
     lines += re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S))
     parts = [part for line in lines for part in re.split(r"&&|#", line)]
-    found = [
-        re.match(r"\s*(?:[$] )?(?:env/bin/|uvx --from \. )?hdrlab (.+)", part) for part in parts
-    ]
-    return [shlex.split(one[1].split(" -- ")[0].replace("...", "")) for one in found if one]
+    pattern = r"\s*(?:[$] )?(?:env/bin/|uvx --from \. )?hdrlab (.+)"
+    matches = [re.match(pattern, part) for part in parts]
+    return [shlex.split(match[1].split(" -- ")[0].replace("...", "")) for match in matches if match]
 
 
 def command_of(words):
@@ -47,12 +46,13 @@ def command_of(words):
     command = cli.main
     while isinstance(command, click.Group) and words and not words[0].startswith("-"):
         assert words[0] in command.commands, f"there is no command {words[0]!r}"
-        command, words = command.commands[words[0]], words[1:]
+        command = command.commands[words[0]]
+        words = words[1:]
     return command, words
 
 
 def options_of(command):
-    return {one for knob in command.params for one in (*knob.opts, *knob.secondary_opts)} | {
+    return {option for knob in command.params for option in (*knob.opts, *knob.secondary_opts)} | {
         "--help",
         "--version",
     }
@@ -85,7 +85,9 @@ def test_commands_are_read_from_listings_and_from_running_text():
 def test_the_table_of_commands_names_every_one_once():
     table = re.findall(r"^\| (`hdrlab .*?) \|", text_of(PAGES / "commands.md"), re.M)
     named = [
-        re.match(r"hdrlab (\w+)", one)[1] for row in table for one in re.findall(r"`([^`]+)`", row)
+        re.match(r"hdrlab (\w+)", code)[1]
+        for row in table
+        for code in re.findall(r"`([^`]+)`", row)
     ]
     hidden = {"doctor", "course"}  # in a row of grade, and in the section for those who teach
     assert sorted(named) == sorted(set(cli.main.commands) - hidden)
@@ -125,7 +127,7 @@ def test_links_between_the_pages_of_the_repository_lead_somewhere():
         named = {
             link.split("/")[4] for link in links if link.startswith("../../actions/workflows/")
         }
-        assert named <= {one.name for one in WORKFLOWS}
+        assert named <= {workflow.name for workflow in WORKFLOWS}
 
 
 def test_one_version_stands_in_the_package_the_changes_and_the_citation():
@@ -147,7 +149,7 @@ def test_the_moving_picture_of_the_readme_moves_and_is_small():
 def test_the_workflows_run_every_tier_and_the_quick_one_on_three_systems():
     jobs = yaml.safe_load(text_of(ROOT / ".github/workflows/ci.yml"))["jobs"]
     assert set(jobs["tiers"]["strategy"]["matrix"]["tier"]) == set(TIERS) - {QUICK}
-    systems = {one.partition("-")[0] for one in jobs["quick"]["strategy"]["matrix"]["os"]}
+    systems = {job.partition("-")[0] for job in jobs["quick"]["strategy"]["matrix"]["os"]}
     assert (
         systems == {"ubuntu", "windows", "macos"}
         and {"run": f"nox -s {QUICK}"} in jobs["quick"]["steps"]

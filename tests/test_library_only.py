@@ -98,10 +98,10 @@ for name in ("a.exr", "a.hdr"):
 def test_a_part_that_needs_another_package_says_which_to_install(tmp_path):
     (tmp_path / "deep.png").write_bytes(imagecodecs.png_encode(np.zeros((2, 2, 3), np.uint16)))
     (tmp_path / "a.tif").write_bytes(b"II*\0" + bytes(40))
-    told = alone(EACH, tmp_path).splitlines()
+    lines = alone(EACH, tmp_path).splitlines()
     assert [
-        (part, package in line) for (part, package), line in zip(PARTS.items(), told, strict=True)
-    ] == [(part, True) for part in PARTS], told
+        (part, package in line) for (part, package), line in zip(PARTS.items(), lines, strict=True)
+    ] == [(part, True) for part in PARTS], lines
 
 
 @pytest.mark.parametrize("form", ["JPEG", "PNG"])

@@ -71,7 +71,7 @@ SHARES = {
 
 def verbs():
     """Return the public verbs by name, and the names of what each must be given."""
-    found = {}
+    public_verbs = {}
     for room in ROOMS:
         package = import_module(f"hdrlab.{room}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
@@ -82,22 +82,21 @@ def verbs():
                     or name.startswith("_")
                 ):
                     continue
-                place, known = (
-                    f"{module.name[7:]}.{name}",
-                    inspect.signature(verb).parameters.values(),
-                )
+                place = f"{module.name[7:]}.{name}"
+                known = inspect.signature(verb).parameters.values()
                 needed = [
-                    one.name
-                    for one in known
-                    if one.default is one.empty and one.kind < one.VAR_KEYWORD
+                    parameter.name
+                    for parameter in known
+                    if parameter.default is parameter.empty
+                    and parameter.kind < parameter.VAR_KEYWORD
                 ]
                 raises = (
                     "\nRaises" in inspect.cleandoc(verb.__doc__ or "")
                     or place == "radiance.merge.merge"
                 )
                 if raises and {*needed[:1]} <= FIRST and needed and place not in ELSEWHERE:
-                    found[place] = verb, needed
-    return found
+                    public_verbs[place] = verb, needed
+    return public_verbs
 
 
 VERBS = verbs()
@@ -112,8 +111,8 @@ def arguments(verb):
     }
 
 
-def call(verb, given):
-    return VERBS[verb][0](**given)
+def call(verb, arguments_of_call):
+    return VERBS[verb][0](**arguments_of_call)
 
 
 def leaves(answer):
@@ -128,7 +127,8 @@ def leaves(answer):
 
 
 def same(a, b):
-    a, b = leaves(a), leaves(b)
+    a = leaves(a)
+    b = leaves(b)
     return len(a) == len(b) and all(
         np.asarray(x).tobytes() == np.asarray(y).tobytes() for x, y in zip(a, b, strict=True)
     )
@@ -175,7 +175,9 @@ MISTAKES = {
         "four channels": lambda a: np.stack([a] * 4, axis=-1),
         "no columns": lambda a: a[:, :, :0],
         "one photograph of Pillow in CMYK": lambda a: Image.fromarray(a[0]).convert("CMYK"),
-        "Pillow's places in a palette": lambda a: [Image.fromarray(one).convert("P") for one in a],
+        "Pillow's places in a palette": lambda a: [
+            Image.fromarray(frame).convert("P") for frame in a
+        ],
     },
     "times": {
         **ANY,
@@ -261,12 +263,11 @@ ANSWERED["capture.ranges.expose_levels", "L"] = {"complex", "masked", "nothing",
 ANSWERED["capture.ranges.expose_levels", "L"] |= {"beyond float32", "four channels"}
 ANSWERED["diagnostics.motion.measure_motion", "w"] = {"None"}
 ANSWERED |= {
-    (f"beyond.{one}.shoot", "e"): {"complex", "masked"} for one in ("assorted", "splitter")
+    (f"beyond.{module}.shoot", "e"): {"complex", "masked"} for module in ("assorted", "splitter")
 }
 ANSWERED["core.metrics.radiance_errors", "well"] = {"masked"}
-ANSWERED["align.shift.shift", "offsets"] = ANSWERED[
-    "align.resample.photographs", "homographies"
-] = {"masked"}
+ANSWERED["align.shift.shift", "offsets"] = {"masked"}
+ANSWERED["align.resample.photographs", "homographies"] = {"masked"}
 GATED = [(verb, name) for verb, (_, needed) in VERBS.items() for name in needed if name in MISTAKES]
 
 
@@ -286,10 +287,10 @@ def test_invalid_values_are_refused_with_a_message(verb, name):
     for mistake, make in MISTAKES[name].items():
         if mistake in ANSWERED.get((verb, name), ()):
             continue
-        given = arguments(verb)
-        given[name] = make(given[name])
+        arguments_of_call = arguments(verb)
+        arguments_of_call[name] = make(arguments_of_call[name])
         try:
-            call(verb, given)
+            call(verb, arguments_of_call)
         except ValueError as error:
             numpy_says_it = str(error).startswith(("could not convert", "setting an array"))
             assert isinstance(error, InputError) or numpy_says_it, mistake
@@ -327,11 +328,11 @@ def test_memory_layout_and_container_type_do_not_change_the_result(verb):
     for form, change in FORMS.items():
         if form == "an object with only __array__" and verb in NEEDS_ARRAYS:
             continue
-        given = {
+        arguments_of_call = {
             name: change(value) if is_number_array(value) else value
             for name, value in arguments(verb).items()
         }
-        assert same(first, call(verb, given)), form
+        assert same(first, call(verb, arguments_of_call)), form
 
 
 BRIGHTEST = np.float32(3e38)
@@ -361,13 +362,13 @@ LIT = [
 @pytest.mark.parametrize("verb", LIT)
 def test_unusual_radiance_gives_finite_numbers_or_a_clear_error(verb):
     for kind, make in AWKWARD.items():
-        given = arguments(verb)
-        for name in {"L", "E", "F"} & given.keys():
-            given[name] = make(given[name])
-        if "picture" in given:
-            given["picture"] = np.full(given["L"].shape, 90, np.uint8)
+        arguments_of_call = arguments(verb)
+        for name in {"L", "E", "F"} & arguments_of_call.keys():
+            arguments_of_call[name] = make(arguments_of_call[name])
+        if "picture" in arguments_of_call:
+            arguments_of_call["picture"] = np.full(arguments_of_call["L"].shape, 90, np.uint8)
         try:
-            answer = call(verb, given)
+            answer = call(verb, arguments_of_call)
         except InputError:
             continue
         if verb not in INFINITE:
@@ -376,20 +377,22 @@ def test_unusual_radiance_gives_finite_numbers_or_a_clear_error(verb):
 
 @pytest.mark.parametrize("verb", LIT)
 def test_half_floats_give_what_their_values_give(verb):
-    given = arguments(verb)
+    arguments_of_call = arguments(verb)
     half = {
-        name: value.astype(np.float16) for name, value in given.items() if name in ("L", "E", "F")
+        name: value.astype(np.float16)
+        for name, value in arguments_of_call.items()
+        if name in ("L", "E", "F")
     }
     single = {name: value.astype(np.float32) for name, value in half.items()}
-    assert same(call(verb, given | half), call(verb, given | single))
+    assert same(call(verb, arguments_of_call | half), call(verb, arguments_of_call | single))
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
 def test_inputs_do_not_change_and_their_layout_order_and_threads_do_not_change_the_result(verb):
-    given = arguments(verb)
-    first = call(verb, given)
+    arguments_of_call = arguments(verb)
+    first = call(verb, arguments_of_call)
     locked = {}
-    for name, value in given.items():
+    for name, value in arguments_of_call.items():
         if isinstance(value, np.ndarray):
             wide = np.repeat(value, 2, axis=-1)
             locked[name] = wide[..., ::2]  # every second element of a row: not contiguous
@@ -398,5 +401,5 @@ def test_inputs_do_not_change_and_their_layout_order_and_threads_do_not_change_t
         else:
             locked[name] = value
     with ThreadPoolExecutor(2) as pool:
-        others = list(pool.map(lambda one: call(verb, one), (locked, given)))
+        others = list(pool.map(lambda result: call(verb, result), (locked, arguments_of_call)))
     assert all(same(first, other) for other in others)

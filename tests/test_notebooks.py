@@ -45,10 +45,17 @@ def bound(table):
 def globals_read(table):
     """Return the globals that the functions of a cell read; a comprehension runs at once, and is none."""
     inner = [
-        each for each in table.get_children() if not each.get_name().endswith(("comp", "genexpr"))
+        inner_table
+        for inner_table in table.get_children()
+        if not inner_table.get_name().endswith(("comp", "genexpr"))
     ]
-    found = {name.get_name() for each in inner for name in each.get_symbols() if name.is_global()}
-    return found.union(*map(globals_read, inner))
+    names = {
+        name.get_name()
+        for inner_table in inner
+        for name in inner_table.get_symbols()
+        if name.is_global()
+    }
+    return names.union(*map(globals_read, inner))
 
 
 def kinds_of(cell):
@@ -130,8 +137,8 @@ def test_a_prediction_binds_no_name_that_a_function_reads_from_another_cell(path
     asks = [k for k, cell in enumerate(cells) if re.search(r"^predict\.", cell.source, re.M)]
     for k, table in enumerate(tables):
         for name in globals_read(table) & set().union(*binds[: k + 1]):
-            meant = max(j for j in range(k + 1) if name in binds[j])
-            assert [cells[j].id for j in asks if name in binds[j] and j != meant] == [], (
+            expected = max(j for j in range(k + 1) if name in binds[j])
+            assert [cells[j].id for j in asks if name in binds[j] and j != expected] == [], (
                 f"{cells[k].id}: {name}"
             )
 
@@ -146,12 +153,12 @@ def test_a_notebook_says_how_long_it_takes_and_what_one_can_do_afterwards(path):
 
 def test_a_question_stands_before_each_picture(path):
     """Each picture follows a text that asks; a strip may also follow the slider it stands in for."""
-    asked = False
+    has_question = False
     for cell in nbformat.read(path, as_version=4).cells:
         if cell.cell_type == "markdown":
-            asked = "?" in cell.source or (asked and not cell.source.startswith("#"))
+            has_question = "?" in cell.source or (has_question and not cell.source.startswith("#"))
         else:
-            assert asked or not calls_of(cell), cell.id
+            assert has_question or not calls_of(cell), cell.id
 
 
 def test_a_question_that_begins_with_predict_takes_an_answer_and_no_other_does(path):

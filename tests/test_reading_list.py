@@ -19,18 +19,18 @@ def test_the_list_has_some_thirty_papers():
 
 @pytest.mark.parametrize("paper", PAPERS, ids=lambda paper: paper[:40])
 def test_a_paper_has_authors_a_linked_title_a_year_and_a_sentence(paper):
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"[A-Z].*?, \[[^\]]+\]\(https://doi\.org/(\S+)\),(?: .*?)? (?:19|20)\d\d\. ([A-Z].*\.)",
         paper,
     )
-    assert found and DOI.fullmatch(found[1])
-    assert len(found[2].split()) >= 5
+    assert match and DOI.fullmatch(match[1])
+    assert len(match[2].split()) >= 5
 
 
 def test_each_doi_is_written_in_full_and_stands_once():
     addresses = re.findall(r"\]\((http[^)]*)\)", TEXT)
-    assert all(re.fullmatch(r"https://doi\.org/" + DOI.pattern, one) for one in addresses)
-    assert len(addresses) == len({one.lower() for one in addresses}) == len(PAPERS) + 1
+    assert all(re.fullmatch(r"https://doi\.org/" + DOI.pattern, address) for address in addresses)
+    assert len(addresses) == len({address.lower() for address in addresses}) == len(PAPERS) + 1
 
 
 def test_each_section_says_which_notebooks_come_before_it():

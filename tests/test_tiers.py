@@ -104,9 +104,11 @@ REPORT = """<testsuites><testsuite>
 def test_the_report_names_what_failed_and_the_slowest_first(tmp_path, capsys):
     (tmp_path / "quick.xml").write_text(REPORT)
     assert junit_summary.print_summary(tmp_path) == 1
-    said = capsys.readouterr().out
-    assert "FAILED tests.a::test_two" in said and said.endswith("1 passed, 1 failed, 1 skipped\n")
-    assert said.index("test_two") < said.index("test_one") < said.index("test_three")
+    output = capsys.readouterr().out
+    assert "FAILED tests.a::test_two" in output and output.endswith(
+        "1 passed, 1 failed, 1 skipped\n"
+    )
+    assert output.index("test_two") < output.index("test_one") < output.index("test_three")
 
 
 def test_a_report_of_no_tests_is_no_success(tmp_path, capsys):

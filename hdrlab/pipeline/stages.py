@@ -425,7 +425,7 @@ def _should_remove_ghosts(
     # Photos that "mtb" could not align may be rotated, and "auto" would align them. With any other
     # method, something moved that no alignment undoes.
     is_explained_by_rotation = is_misaligned and options.align == "mtb"
-    is_moving = causes.is_moving(*measured)
+    is_moving = causes.is_moving(measured.fraction, measured.band_stops)
     return is_moving and not is_explained_by_rotation
 
 
