@@ -62,7 +62,7 @@ BY_HAND = {
 
 
 def numbers(text):
-    """Return the numbers of an answer; of 1/25 s, the 25."""
+    """Return the numbers of an answer; for 1/25 s, this is 25."""
     return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text.replace("1/", ""))]
 
 
@@ -161,14 +161,16 @@ def test_the_printed_page_keeps_the_key_apart_from_the_questions(tmp_path):
     with pytest.raises(SystemExit) as ended:
         cli.run(["course", "questions", "--inventory", "-o", str(path)])
     assert not ended.value.code
-    asked, _, key = path.read_text("utf-8").replace("&#39;", "'").partition("<h1>Answers</h1>")
+    questions_part, _, key = (
+        path.read_text("utf-8").replace("&#39;", "'").partition("<h1>Answers</h1>")
+    )
     for question in QUESTIONS:
-        assert question.stem in asked and question.because not in asked
+        assert question.stem in questions_part and question.because not in questions_part
         letter = "abcd"[question.options.index(question.right)]
         assert f"{letter}) {question.right}. {question.because}" in key
         for misconception in question.misconceptions.values():
-            assert misconception in key and misconception not in asked
-    assert not re.search(r"(?:src|href)=\"(?!data:)", asked + key)
+            assert misconception in key and misconception not in questions_part
+    assert not re.search(r"(?:src|href)=\"(?!data:)", questions_part + key)
 
 
 @needs_site
@@ -214,12 +216,12 @@ def test_the_gain_of_a_simulated_class_is_found_and_lies_in_its_interval(tmp_pat
     learned = known_before | (rng.random((400, 30)) < 0.5)
     before = write_letters(tmp_path / "b.csv", dict(zip(students, known_before, strict=True)))
     after = write_letters(tmp_path / "a.csv", dict(zip(students, learned, strict=True)))
-    found = gain_of(before, after)
-    assert found.students == 400
-    assert found.total.gain == pytest.approx(0.5, abs=0.02)
-    assert found.total.interval.low < 0.5 < found.total.interval.high
-    assert found.total.interval.high - found.total.interval.low < 0.04
-    for concept in found.concepts:
+    gain = gain_of(before, after)
+    assert gain.students == 400
+    assert gain.total.gain == pytest.approx(0.5, abs=0.02)
+    assert gain.total.interval.low < 0.5 < gain.total.interval.high
+    assert gain.total.interval.high - gain.total.interval.low < 0.04
+    for concept in gain.concepts:
         assert concept.gain == pytest.approx(0.5, abs=0.1)
         assert concept.interval.low < concept.gain < concept.interval.high
         assert concept.before == pytest.approx(25, abs=5)
@@ -271,12 +273,12 @@ def test_a_page_about_a_class_loads_nothing_and_names_the_misconception_that_rem
 
 def test_a_class_that_knew_everything_before_has_no_gain(tmp_path):
     everything = dict.fromkeys((f"s{k}" for k in range(20)), [True] * 30)
-    found = gain_of(
+    class_gain = gain_of(
         write_letters(tmp_path / "b.csv", everything), write_letters(tmp_path / "a.csv", everything)
     )
-    assert found.total.gain is None and found.total.interval is None
-    assert found.total.remaining is None
-    assert "–" in gain.gain_page(found)
+    assert class_gain.total.gain is None and class_gain.total.interval is None
+    assert class_gain.total.remaining is None
+    assert "–" in gain.gain_page(class_gain)
 
 
 def moodle_table(path, rows, ids=("ID number", "Email address")):
@@ -299,8 +301,8 @@ def test_the_quiz_report_of_moodle_is_read(tmp_path):
         [(["1", "o'hara@x.edu"], wrong), (["", "no-attempt@x.edu"], nothing)],
     )
     after = moodle_table(tmp_path / "a.csv", [(["1", "o'hara@x.edu"], right)])
-    found = gain_of(before, after)
-    assert (found.students, found.total.before, found.total.after) == (1, 0, 100)
+    gain = gain_of(before, after)
+    assert (gain.students, gain.total.before, gain.total.after) == (1, 0, 100)
 
 
 def test_a_table_of_letters_and_a_report_of_moodle_can_be_compared(tmp_path):
@@ -326,21 +328,21 @@ def test_empty_cells_are_no_answers_and_not_right(tmp_path):
     key = ["abcde"[question.options.index(question.right)] for question in QUESTIONS]
     before = write_table(tmp_path / "b.csv", columns, [["ann", key[0]], ["ben"]])
     after = write_table(tmp_path / "a.csv", columns, [["ann", *key[:3], "", "e", *key[5:]]])
-    found = gain_of(before, after)
-    assert found.students == 1  # ben answered nothing
-    assert found.total.before == pytest.approx(100 / 30)
-    assert found.total.after == pytest.approx(100 * 28 / 30)
-    assert found.total.unknown_before == pytest.approx(100 * 29 / 30)
-    assert found.total.unknown_after == pytest.approx(100 * 2 / 30)
+    gain = gain_of(before, after)
+    assert gain.students == 1  # ben answered nothing
+    assert gain.total.before == pytest.approx(100 / 30)
+    assert gain.total.after == pytest.approx(100 * 28 / 30)
+    assert gain.total.unknown_before == pytest.approx(100 * 29 / 30)
+    assert gain.total.unknown_after == pytest.approx(100 * 2 / 30)
 
 
 def test_questions_that_only_one_file_has_are_left_out(tmp_path):
     columns = ["student", "q1", "q2", "q30"]
     before = write_table(tmp_path / "b.csv", columns, [["ann", "e", "e", "e"]])
     after = write_table(tmp_path / "a.csv", columns[:3], [["ann", "B)", "a."]])
-    found = gain_of(before, after)
-    assert list(found.questions) == [1, 2] and found.missing == tuple(range(3, 31))
-    assert [concept.title for concept in found.concepts] == ["Dynamic range and stops"]
+    gain = gain_of(before, after)
+    assert list(gain.questions) == [1, 2] and gain.missing == tuple(range(3, 31))
+    assert [concept.title for concept in gain.concepts] == ["Dynamic range and stops"]
 
 
 @pytest.mark.parametrize(

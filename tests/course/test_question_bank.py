@@ -78,13 +78,14 @@ def test_a_number_is_right_if_its_error_is_small_in_the_notebook(questions):
     answer = questions["How many stops?"].find("answer")
     assert float(answer.findtext("text")) == pytest.approx(11.4)
     assert float(answer.findtext("tolerance")) == pytest.approx(0.1 * 20)
-    asked = questions["How many stops?"].findtext("questiontext/text")
-    assert "from 0 to 20 (stops)" in asked
+    question_text = questions["How many stops?"].findtext("questiontext/text")
+    assert "from 0 to 20 (stops)" in question_text
 
 
 def test_the_paragraph_that_asks_goes_with_its_question_alone_and_its_formulas_are_tex(questions):
-    asked = questions["Sky or &lt;wall&gt;?"].findtext("questiontext/text")
-    assert r"With \(\beta &lt; 1\), which is brighter?" in asked and "Predict" not in asked
+    question_text = questions["Sky or &lt;wall&gt;?"].findtext("questiontext/text")
+    assert r"With \(\beta &lt; 1\), which is brighter?" in question_text
+    assert "Predict" not in question_text
     assert "beta" not in questions["How many stops?"].findtext("questiontext/text")
 
 
@@ -110,9 +111,9 @@ def test_questions_have_names_of_their_own_that_do_not_depend_on_their_order(que
 
 def test_the_page_to_print_has_all_questions_before_the_first_answer(folder):
     page = (folder / "bank.html").read_text("utf-8")
-    asked, _, answers = page.partition("<h1>Answers</h1>")
+    questions_page, _, answers = page.partition("<h1>Answers</h1>")
     for text in ("Sky or &lt;wall&gt;?", "How many stops?", "Which is darker?"):
-        assert text in asked and text not in answers
+        assert text in questions_page and text not in answers
     assert "b) the wall. It is lit." in answers and "11.4 stops. Count." in answers
     assert not re.search(r"(?:src|href)=\"(?!data:)", page)
 

@@ -1,4 +1,4 @@
-"""The words of a variant, and functions that run in this process."""
+"""The texts of a variant, and functions that run in this process."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ PAIRS = {"size": SIZES, "way": {"up": [], "down": [("up", "down")]}}
 
 @pytest.fixture
 def known(monkeypatch):
-    """A task, t, with two parameters; all others have none."""
+    """A task t with two parameters; all other tasks have none."""
     monkeypatch.setattr(rewording, "parameters", lambda task: PAIRS if task == "t" else {})
 
 
@@ -55,8 +55,8 @@ def test_every_variant_has_a_name_and_the_librarys_comes_first():
     for task in tasks:
         every = rewording.every(task)
         values = rewording.parameters(task).values()
-        assert len(every) == np.prod([len(one) for one in values]) == len(set(every))
-        assert every[0] == "/".join(next(iter(one)) for one in values)
+        assert len(every) == np.prod([len(value_list) for value_list in values]) == len(set(every))
+        assert every[0] == "/".join(next(iter(value_list)) for value_list in values)
 
 
 def test_a_library_function_is_called_like_a_students_and_its_calls_are_recorded():
@@ -65,12 +65,12 @@ def test_a_library_function_is_called_like_a_students_and_its_calls_are_recorded
         return x, [1]
 
     subject = inprocess.Subject({"f": f, "_g": f, "h": lambda: 1 / 0})
-    given = np.arange(3.0)
-    answer = subject.f(given, k=2)
+    arguments = np.arange(3.0)
+    answer = subject.f(arguments, k=2)
     assert answer[0].tolist() == [0, 2, 4] and answer[1] == [1]
     ((args, named, came),) = subject.calls
     assert named == {"k": 2} and came is answer
-    given[:] = 9
+    arguments[:] = 9
     assert args[0].tolist() == [0, 2, 4]
     with pytest.raises(ZeroDivisionError):
         subject.h()
@@ -82,11 +82,11 @@ def test_a_library_function_is_called_like_a_students_and_its_calls_are_recorded
 
 def test_the_library_has_a_function_for_each_task_of_a_plan():
     whole = plan.read()
-    tasks = [one for homework in whole.homeworks.values() for one in homework.tasks]
+    tasks = [task for homework in whole.homeworks.values() for task in homework.tasks]
     subject = inprocess.library()
-    assert all(callable(getattr(subject, one.id)) for one in tasks)
+    assert all(callable(getattr(subject, task.id)) for task in tasks)
     hw2 = {"hw2": whole.homeworks["hw2"]}
     own = inprocess.library(whole._replace(homeworks=hw2))
-    (other,) = {one.id for one in whole.homeworks["hw1"].tasks} & {"shrink"}
+    (other,) = {task.id for task in whole.homeworks["hw1"].tasks} & {"shrink"}
     with pytest.raises(AttributeError):
         getattr(own, other)

@@ -37,7 +37,7 @@ TASKS = sorted(path.stem for path in rewording.FOLDER.glob("*.toml"))
 EVERY = [(task, variant) for task in TASKS for variant in rewording.every(task)]
 NOW = datetime(2026, 10, 1, tzinfo=UTC)
 HOMEWORK = {task.id: homework for homework in PLAN.homeworks.values() for task in homework.tasks}
-SECRET = "x"  # by which the two teams of the class are asked other variants of all
+SECRET = "x"  # gives the two teams of the class different variants of all tasks
 SHEET = """
 [hw1]
 title = "Alignment"
@@ -52,28 +52,31 @@ CLASS = SHEET.replace("VOTES", '["clipped", "tie", "margin"]').replace(
 )
 
 
-def asked(task, variant):
+def task_of(task, variant):
     return PLAN.task(task)._replace(variant=variant)
 
 
 def homework_of(task, variant):
-    """Return the homework of a task, of which a variant is asked."""
+    """Return the homework of a task, with a variant of that task."""
     whole = HOMEWORK[task]
     return whole._replace(
-        tasks=tuple(asked(task, variant) if one.id == task else one for one in whole.tasks)
+        tasks=tuple(
+            task_of(task, variant) if task_in_plan.id == task else task_in_plan
+            for task_in_plan in whole.tasks
+        )
     )
 
 
 @cache
 def made(task, variant):
-    """Return the handout of a homework in which a variant of one task is asked."""
+    """Return the handout of a homework with a variant of one task."""
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     homework = homework_of(task, variant)
     return handouts.handout((SOURCES / f"{homework.name}.py").read_text("utf8"), homework)
 
 
 def about(task, variant):
-    """Return all that is said of a task, by kind."""
+    """Return all texts about a task, by kind."""
     handout = made(task, variant)
     sheet = [cell["source"] for cell in handout.assignment["cells"]]
     at = sheet.index(f'check("{task}")')
@@ -84,17 +87,19 @@ def about(task, variant):
         "pictures": "\n".join(text for text in sheet if re.search(rf"(?<!def )\b{task}\(", text)),
         "solution": handout.solution["cells"][at - 1]["source"],
         "checks": checks,
-        "mistakes": "\n".join(one.sentence for one in misconceptions.of_task(asked(task, variant))),
+        "mistakes": "\n".join(
+            mistake.sentence for mistake in misconceptions.of_task(task_of(task, variant))
+        ),
     }
 
 
 def subject(task, variant):
-    return inprocess.Subject({task: plan.function(asked(task, variant))})
+    return inprocess.Subject({task: plan.function(task_of(task, variant))})
 
 
 @pytest.fixture
 def course(tmp_path, monkeypatch):
-    """A plan with variants, a class of three and its secret; go there."""
+    """A plan with variants, a class of three and its secret; change to its folder."""
     monkeypatch.chdir(tmp_path)
     Path("plan.toml").write_text(CLASS)
     Path("roster.csv").write_text("student,name,team\nb1,Ada,\nb2,Bo,pair\nb3,Cy,pair\n")
@@ -124,7 +129,7 @@ def build(out, *more):
 
 
 def filled(homework, path):
-    """Write a sheet, filled in with the solutions of its own variants, and return it."""
+    """Write an assignment, solved with the solutions of its own variants, and return its path."""
     source = (SOURCES / f"{homework.name}.py").read_text("utf8")
     path.write_text(handouts.to_text(handouts.handout(source, homework).solution))
     return path
@@ -160,9 +165,9 @@ def test_every_text_replacement_of_a_variant_is_used(task):
     used = set()
     texts = [*about(task, "").values()]
     texts += [
-        solutions.texts(homework_of(task, ""), [one.name])[task]
-        for one in misconceptions.known()
-        if one.task == task
+        solutions.texts(homework_of(task, ""), [mistake.name])[task]
+        for mistake in misconceptions.known()
+        if mistake.task == task
     ]
     for variant in rewording.every(task):
         for text in texts:
@@ -170,13 +175,14 @@ def test_every_text_replacement_of_a_variant_is_used(task):
                 rewording.parameters(task).values(), variant.split("/"), strict=True
             ):
                 for was, now in values[value]:
-                    used |= {(value, was)} if was in text else set()
+                    if was in text:
+                        used.add((value, was))
                     text = text.replace(was, now)
     pairs = {
         (value, was)
         for values in rewording.parameters(task).values()
-        for value, each in values.items()
-        for was, _ in each
+        for value, replacement in values.items()
+        for was, _ in replacement
     }
     assert pairs - used == set()
 
@@ -234,25 +240,23 @@ SAID = {
 
 @pytest.mark.parametrize(("task", "variant"), EVERY)
 def test_assignment_and_hints_of_a_variant_name_only_its_own_values(task, variant):
-    said = about(task, variant)
+    texts = about(task, variant)
     own = dict(zip(rewording.parameters(task), variant.split("/"), strict=True))
     for parameter, values in SAID[task].items():
         for value, (prose, hint) in values.items():
-            assert (prose in said["prose"]) == (own[parameter] == value), (prose, said["prose"])
-            assert (hint in said["checks"]) == (own[parameter] == value), hint
+            assert (prose in texts["prose"]) == (own[parameter] == value), (prose, texts["prose"])
+            assert (hint in texts["checks"]) == (own[parameter] == value), hint
 
 
 @pytest.mark.parametrize("variant", rewording.every("shift"))
 def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
     from hdrlab.align.shift import crop, shift
 
-    given = re.search(r"shift\(grays, (.*?)\)\)", about("shift", variant)["pictures"])[1]
+    arguments = re.search(r"shift\(grays, (.*?)\)\)", about("shift", variant)["pictures"])[1]
     rng = np.random.default_rng(3)
-    grays, offsets = (
-        rng.integers(0, 256, (3, 30, 40), np.uint8),
-        np.array([[0, 0], [4, -3], [-2, 5]]),
-    )
-    came = plan.function(asked("shift", variant))(grays, eval(given, {"offsets": offsets}))
+    grays = rng.integers(0, 256, (3, 30, 40), np.uint8)
+    offsets = np.array([[0, 0], [4, -3], [-2, 5]])
+    came = plan.function(task_of("shift", variant))(grays, eval(arguments, {"offsets": offsets}))
     common = (slice(None), *crop(offsets, grays.shape[1:]))
     expected = shift(grays, offsets)
     assert np.array_equal(came[common] if variant.startswith("black") else came, expected)
@@ -265,10 +269,13 @@ def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
 @pytest.mark.parametrize("student", ["ada", "Emmy Noether"])
 def test_the_solution_of_every_variant_passes_every_check(task, student):
     for variant in rewording.every(task):
-        share, said = scoring.score(
+        share, outcomes = scoring.score(
             task, subject(task, variant), plan.seed("x", student, task), variant
         )
-        assert share == 1, (variant, {name: str(error) for name, error in said.items() if error})
+        assert share == 1, (
+            variant,
+            {name: str(error) for name, error in outcomes.items() if error},
+        )
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -284,20 +291,20 @@ def test_the_solution_of_another_variant_loses_a_quarter_of_the_points_or_more(t
 @pytest.mark.parametrize("task", TASKS)
 def test_each_named_mistake_is_named_for_every_variant_and_costs_points_but_not_all(task):
     for variant in rewording.every(task):
-        for one in misconceptions.of_task(asked(task, variant)):
-            wrong = inprocess.Subject({task: one.function})
+        for mistake in misconceptions.of_task(task_of(task, variant)):
+            wrong = inprocess.Subject({task: mistake.function})
             share, _ = scoring.score(task, wrong, plan.seed("x", "ada", task), variant)
-            found = misconceptions.closest(asked(task, variant), wrong.calls[:20])
-            assert found is not None and found.name == one.name, variant
-            assert 0 < share < 1 and (share >= 0.5 or one.misses_method), variant
+            closest = misconceptions.closest(task_of(task, variant), wrong.calls[:20])
+            assert closest is not None and closest.name == mistake.name, variant
+            assert 0 < share < 1 and (share >= 0.5 or mistake.misses_method), variant
 
 
 @pytest.mark.parametrize("task", TASKS)
 def test_mistakes_of_variants_can_be_imitated_for_a_class(task):
     for variant in rewording.every(task):
         right = solutions.texts(homework_of(task, variant))
-        for one in misconceptions.of_task(asked(task, variant)):
-            assert solutions.texts(homework_of(task, variant), [one.name])[task] != right[task]
+        for mistake in misconceptions.of_task(task_of(task, variant)):
+            assert solutions.texts(homework_of(task, variant), [mistake.name])[task] != right[task]
 
 
 def test_alignment_works_with_the_exclusion_bitmap_of_any_variant():
@@ -310,7 +317,7 @@ def test_alignment_works_with_the_exclusion_bitmap_of_any_variant():
         assert scoring.score("align", inprocess.Subject({"align": scope["align"]}))[0] == 1
 
 
-# Who is asked what
+# Which team gets which variant
 
 
 def test_a_plan_without_parameters_asks_everybody_the_same():
@@ -322,13 +329,16 @@ def test_variant_values_are_drawn_evenly_and_unlisted_parameters_stay(
     course,
 ):
     some = course.homeworks["hw1"].tasks[0]._replace(parameters=("margin", "tie"))
-    each = [
+    variants = [
         plan.draw_variants(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET)
         .tasks[0]
         .variant
         for n in range(600)
     ]
-    counted = [Counter(one) for one in zip(*(variant.split("/") for variant in each), strict=True)]
+    counted = [
+        Counter(values)
+        for values in zip(*(variant.split("/") for variant in variants), strict=True)
+    ]
     assert [*counted[0]] == ["compared"]
     assert all(240 < n < 360 for n in counted[1].values()) and len(counted[1]) == 2
     assert all(150 < n < 250 for n in counted[2].values()) and len(counted[2]) == 3
@@ -375,7 +385,7 @@ def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can
 
 
 @pytest.mark.parametrize(
-    ("was", "now", "said"),
+    ("was", "now", "message"),
     [
         ('"tie"', '"knot"', "expected parameters of exclusion out of clipped, tie, margin, got"),
         ('["clipped", "tie", "margin"]', '"tie"', "expected parameters of exclusion"),
@@ -392,9 +402,9 @@ def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can
         ),
     ],
 )
-def test_unknown_parameters_of_a_task_are_refused_with_a_message(was, now, said, tmp_path):
+def test_unknown_parameters_of_a_task_are_refused_with_a_message(was, now, message, tmp_path):
     (tmp_path / "plan.toml").write_text(CLASS.replace(was, now))
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         plan.read(tmp_path / "plan.toml")
 
 
@@ -406,20 +416,16 @@ def test_a_student_can_check_their_assignment_without_the_secret(course, tmp_pat
     assert all(task.variant not in ("", rewording.every(task.id)[0]) for task in own.tasks)
     path = filled(own, tmp_path / "hw1.ipynb")
     plain = course.homeworks["hw1"]._replace(
-        tasks=tuple(one._replace(parameters=()) for one in course.homeworks["hw1"].tasks)
+        tasks=tuple(task._replace(parameters=()) for task in course.homeworks["hw1"].tasks)
     )
     result = grader.grade(path, plain, GradingOptions("practice"))
     assert result.score == 25 and not result.problems
-    (cell,) = (
-        one
-        for one in json.loads(path.read_text())["cells"]
-        if "use_plan(" in "".join(one["source"])
-    )
+    sources = ["".join(cell["source"]) for cell in json.loads(path.read_text())["cells"]]
+    (source,) = [source for source in sources if "use_plan(" in source]
     monkeypatch.setattr(notebook, "_planned", {})
-    exec("".join(cell["source"]).partition("\nroom =")[0], {})
-    assert [one.variant for one in notebook.find_tasks("hw1")[0].tasks] == [
-        one.variant for one in own.tasks
-    ]
+    exec(source.partition("\nroom =")[0], {})
+    checked_tasks = notebook.find_tasks("hw1")[0].tasks
+    assert [task.variant for task in checked_tasks] == [task.variant for task in own.tasks]
 
 
 def test_grading_uses_the_variant_of_the_secret_and_not_the_one_named_in_the_notebook(
@@ -434,7 +440,7 @@ def test_grading_uses_the_variant_of_the_secret_and_not_the_one_named_in_the_not
     assert other.score <= 0.75 * 25 and other.specification != own.specification
     (problem,) = other.problems
     assert "exclusion, shift" in problem
-    promises = {one.name for one in other.checks} ^ {one.name for one in own.checks}
+    promises = {check.name for check in other.checks} ^ {check.name for check in own.checks}
     assert any("values_on_either_side" in name for name in promises)
 
 
@@ -447,7 +453,7 @@ def test_an_assignment_with_an_unknown_variant_is_checked_like_the_library(named
     )
     read = reader.tasks_of(path, ["exclusion"])
     believed = plan.draw_variants(course.homeworks["hw1"], "", "", read.variants)
-    assert [one.variant for one in believed.tasks] == ["", ""]
+    assert [task.variant for task in believed.tasks] == ["", ""]
     path.write_text("def exclusion(Y, t):\n    return abs(Y.astype(int) - t) > 4\n")
     assert reader.tasks_of(path, ["exclusion"]).variants is None
 
@@ -474,17 +480,17 @@ def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
     assert points["b2"] == points["b3"] == 25 and points["b1"] <= 0.75 * 25
     page = Path("out/similar.html").read_text()
     assert "Sheets of another variant" in page and "<b>b1</b>: exclusion, shift" in page
-    told = Path("out/feedback/b1/feedback.html").read_text()
-    assert "This is the assignment of another student" in told
+    feedback_page = Path("out/feedback/b1/feedback.html").read_text()
+    assert "This is the assignment of another student" in feedback_page
 
 
 def test_the_assignments_of_a_class_of_variants_agree_with_their_grading(tmp_path):
     benchmark = pytest.importorskip(
         "benchmarks.class_.sheets", reason="the benchmarks are not installed"
     )
-    found = benchmark.build(tmp_path, 3)
-    assert found["sheets"] == 3 * 2 and found["different ones"] > 2
-    assert found["sheets that ask what is not graded"] == 0
+    rows = benchmark.build(tmp_path, 3)
+    assert rows["sheets"] == 3 * 2 and rows["different ones"] > 2
+    assert rows["sheets that ask what is not graded"] == 0
 
 
 def test_gradescope_uses_the_variants_of_a_roster_with_email_addresses(course):
@@ -500,10 +506,11 @@ def test_gradescope_uses_the_variants_of_a_roster_with_email_addresses(course):
 
 
 def written(folder, texts, course):
-    """Return page and table about a class that has handed in these texts of hw1."""
+    """Return the similarity page and table of a class that has submitted these texts for hw1."""
     known = {task.id: task for task in course.homeworks["hw1"].tasks}
     homework = HOMEWORK["shift"]
-    homework = homework._replace(tasks=tuple(known.get(one.id, one) for one in homework.tasks))
+    tasks = tuple(known.get(task.id, task) for task in homework.tasks)
+    homework = homework._replace(tasks=tasks)
     handins = {}
     for team, text in texts.items():
         (folder / f"{team}.py").write_text(text)
@@ -514,14 +521,15 @@ def written(folder, texts, course):
 
 def test_a_copy_with_changed_parameters_is_found_and_its_assignment_is_named(course, tmp_path):
     apart = materials.folder("tests") / "equivalent"
-    text, other = ((apart / f"hw1_{name}.py").read_text() for name in ("loops", "float32"))
+    text = (apart / "hw1_loops.py").read_text()
+    other = (apart / "hw1_float32.py").read_text()
     copied = text.replace("> 4\n", ">= 6\n").replace("(dy, dx) in", "(dx, dy) in")
     assert copied != text
     homework = course.homeworks["hw1"]
-    names = {
-        team: {one.id: one.variant for one in plan.draw_variants(homework, team, SECRET).tasks}
-        for team in "ab"
-    }
+    names = {}
+    for team in "ab":
+        tasks = plan.draw_variants(homework, team, SECRET).tasks
+        names[team] = {task.id: task.variant for task in tasks}
     head = {team: f'use_plan("hw1", variants={json.dumps(names[team])})\n\n# %%\n' for team in "ab"}
     texts = {"a": head["a"] + text, "b": head["a"] + copied, "c": other}
     page, rows = written(tmp_path, texts, course)
