@@ -39,10 +39,8 @@ def test_the_equations_hold_on_the_true_curve(seven_frames):
     w = weights.cut(weights.hat(), below=0.05)
     equations = grossberg.build_equations(transfer.histograms(taken.images)[0], taken.times, w)
     miss = np.interp(equations.T, np.arange(256), g) - g[equations.m] + np.log(equations.R)
-    assert (
-        np.count_nonzero(equations.weight) > 300
-        and np.sqrt(np.average(miss**2, weights=equations.weight**2)) < 0.02
-    )
+    assert np.count_nonzero(equations.weight) > 300
+    assert np.sqrt(np.average(miss**2, weights=equations.weight**2)) < 0.02
 
 
 def test_fractional_levels_are_interpolated():
@@ -133,9 +131,8 @@ def test_cut_weights_rescue_debevec_but_not_the_polynomial_of_pixels(figures):
 
 def test_from_histograms_with_the_cut_no_method_fails(figures):
     for figure in figures:
-        assert (
-            figure.cut["Debevec, histograms"] <= 0.1 and figure.cut["polynomial, histograms"] <= 0.2
-        )
+        assert figure.cut["Debevec, histograms"] <= 0.1
+        assert figure.cut["polynomial, histograms"] <= 0.2
 
 
 def test_a_polynomial_of_the_cameras_own_order_fits(figures):

@@ -28,11 +28,9 @@ def test_the_threshold_for_well_estimated_noise_equals_that_for_known_noise(s, p
 def test_the_temporal_average_is_mean_and_unbiased_variance():
     A = noise(7, (4, 5))
     mean, variance, t = selection.temporal_average(A)
-    assert (
-        t == 7
-        and np.allclose(mean, A.mean(axis=0))
-        and np.allclose(variance, A.var(axis=0, ddof=1))
-    )
+    assert t == 7
+    assert np.allclose(mean, A.mean(axis=0))
+    assert np.allclose(variance, A.var(axis=0, ddof=1))
     assert np.all(selection.temporal_average(A[:1], sigma=0.02).variance == 0.02**2)
 
 
@@ -40,9 +38,8 @@ def test_the_spatial_average_is_that_of_the_patch():
     A = noise(1, (9, 9))[0] + 1000  # far from 0, where squares would drown the differences
     mean, variance = selection.spatial_average(A, size=5)
     patch = A[2:7, 1:6]
-    assert np.isclose(mean[4, 3], patch.mean()) and np.isclose(
-        variance[4, 3], patch.var(), rtol=1e-6
-    )
+    assert np.isclose(mean[4, 3], patch.mean())
+    assert np.isclose(variance[4, 3], patch.var(), rtol=1e-6)
 
 
 @pytest.mark.parametrize("t", [1, 2, 100])
@@ -130,9 +127,8 @@ def test_without_vignetting_the_circle_covers_the_whole_image(seed):
 
 def test_frames_may_have_a_single_pixel():
     average = selection.temporal_average(np.array([[[0.2]], [[0.4]]]))
-    assert average.mean == pytest.approx(np.array([[0.3]])) and average.variance == pytest.approx(
-        np.array([[0.02]])
-    )
+    assert average.mean == pytest.approx(np.array([[0.3]]))
+    assert average.variance == pytest.approx(np.array([[0.02]]))
 
 
 def test_the_smallest_patch_has_two_by_two_pixels():
