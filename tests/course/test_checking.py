@@ -15,7 +15,7 @@ from hdrlab.course.checks.subject import NoAnswer
 
 @pytest.fixture
 def checking(tmp_path):
-    """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
+    """A GradingPlugin whose method `lines` reads its output; no check has any notes yet."""
     compare.notes.clear()
     yield fake_grading_plugin.make_plugin(tmp_path)
     compare.notes.clear()
@@ -26,21 +26,22 @@ def request(task="hat"):
 
 
 def fixture(checking, name):
-    """The function beneath a fixture."""
-    found = getattr(type(checking), name)
-    return getattr(found, "__wrapped__", None) or found.__pytest_wrapped__.obj
+    """Return the function of a fixture."""
+    fixture_function = getattr(type(checking), name)
+    return getattr(fixture_function, "__wrapped__", None) or fixture_function.__pytest_wrapped__.obj
 
 
 def test_the_job_is_read_and_its_worker_registered(tmp_path):
     (tmp_path / "job.json").write_text('{"by": "json:dumps", "more": 1}', encoding="utf8")
-    said, options = [], []
+    messages = []
+    options = []
     config = SimpleNamespace(
-        addinivalue_line=lambda *words: said.append(words),
+        addinivalue_line=lambda *words: messages.append(words),
         getoption=lambda name: str(tmp_path / "job.json") if name == "--job" else None,
-        pluginmanager=SimpleNamespace(register=lambda *words: said.append(words)),
+        pluginmanager=SimpleNamespace(register=lambda *words: messages.append(words)),
     )
     plugin.pytest_configure(config)
-    assert said == [
+    assert messages == [
         ("markers", plugin.POINTS_MARKER),
         ('{"by": "json:dumps", "more": 1}', "hdrlab-checking"),
     ]
@@ -55,8 +56,8 @@ def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
     begun = []
 
     class Made:
-        def __init__(self, *given):
-            begun.append(given)
+        def __init__(self, *arguments):
+            begun.append(arguments)
 
         def __enter__(self):
             return self
@@ -80,12 +81,14 @@ def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(
 
 
 def test_each_check_gets_a_fresh_subject_or_no_answer_for_a_missing_or_late_task(checking):
-    checking.submission, subject = CalledSubject(), fixture(checking, "subject")
+    checking.submission = CalledSubject()
+    subject = fixture(checking, "subject")
     compare.notes.append("of the check before")
     assert subject(checking, request()) is checking.submission
     assert checking.submission.fresh_count == 1 and not compare.notes
     for late, task, kind in ((False, "gsolve", "missing"), (True, "hat", "late")):
-        checking.late |= {"hat"} if late else set()
+        if late:
+            checking.late.add("hat")
         with pytest.raises(NoAnswer) as raised:
             subject(checking, request(task)).hat()
         assert raised.value.kind == kind and str(raised.value) == ""
@@ -137,7 +140,5 @@ def test_all_checks_are_listed_before_the_first_one_runs(checking):
 
 def test_hints_are_the_paragraphs_of_a_docstring():
     assert plugin.hints(None) == [] and plugin.hints(SimpleNamespace()) != [""]
-    assert (
-        plugin.promise_of(make_item("test_a")) == "A"
-        and plugin.promise_of(make_item("test_")) == ""
-    )
+    assert plugin.promise_of(make_item("test_a")) == "A"
+    assert plugin.promise_of(make_item("test_")) == ""

@@ -18,7 +18,7 @@ from hdrlab.course.sandbox.session import Unavailable
 
 @pytest.fixture
 def checking(tmp_path):
-    """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
+    """A GradingPlugin whose method `lines` reads its output; no check has any notes yet."""
     compare.notes.clear()
     yield fake_grading_plugin.make_plugin(tmp_path)
     compare.notes.clear()
@@ -49,7 +49,7 @@ def test_a_check_is_reported_after_its_call_or_a_failed_setup(when, raised, writ
     with pytest.raises(StopIteration) as stopped:
         report.send("report")
     assert stopped.value.value == "report"
-    assert [one["outcome"] for one in checking.lines()] == ([written] if written else [])
+    assert [line["outcome"] for line in checking.lines()] == ([written] if written else [])
 
 
 def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(checking):
@@ -133,21 +133,24 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
     kind, shape, drawn, checking, monkeypatch
 ):
     monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
-    truth, came = np.zeros(shape), np.ones(shape, np.float32)
+    truth = np.zeros(shape)
+    came = np.ones(shape, np.float32)
     error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
     end_check(checking, make_item(), error)
     checking.job["draw"] = False
     end_check(checking, make_item(), error)
-    first, second = (one["differs"] for one in checking.lines())
+    first, second = [line["differs"] for line in checking.lines()]
     assert second is None and (first is not None) is drawn
     if drawn:
-        texts = [base64.b64encode(one.astype("<f8").tobytes()).decode() for one in (truth, came)]
+        texts = [
+            base64.b64encode(array.astype("<f8").tobytes()).decode() for array in (truth, came)
+        ]
         assert first == {"kind": kind, "shape": list(shape), "expected": texts[0], "came": texts[1]}
 
 
-@pytest.mark.parametrize("given", ["expected", "came"])
-def test_nothing_is_drawn_unless_both_answers_are_known(given, checking):
-    end_check(checking, make_item(), AnswerMismatch("no", kind="curve", **{given: np.zeros(3)}))
+@pytest.mark.parametrize("answers", ["expected", "came"])
+def test_nothing_is_drawn_unless_both_answers_are_known(answers, checking):
+    end_check(checking, make_item(), AnswerMismatch("no", kind="curve", **{answers: np.zeros(3)}))
     (line,) = checking.lines()
     assert line["differs"] is None
 
@@ -175,8 +178,8 @@ def test_mistakes_of_failed_tasks_are_recognized_and_an_error_affects_one_task_o
     def diagnose(task, checks):
         if task.id == "gsolve":
             raise ValueError
-        asked = [misconceptions.CheckedCalls(calls=[((0,), {}, 5)], holds=False)]
-        assert (task.function, task.points, checks) == ("core.weights.hat", 1.0, asked)
+        calls = [misconceptions.CheckedCalls(calls=[((0,), {}, 5)], holds=False)]
+        assert (task.function, task.points, checks) == ("core.weights.hat", 1.0, calls)
         mistake = KnownMistake(
             name="hat_x", task="hat", sentence="A sentence.", function=len, misses_method=True
         )

@@ -9,16 +9,16 @@ from hdrlab.course.checks.compare import AnswerMismatch, finite, numbers, parts,
 
 @pytest.fixture(autouse=True)
 def notes():
-    """What is noted of a check, which begins with nothing."""
+    """The notes of a check; there are none at its start."""
     compare.notes.clear()
     yield compare.notes
     compare.notes.clear()
 
 
-def refused(ask, *given, **named):
-    """Return the words of a refusal, which are the same as those that are remembered."""
+def refused(ask, *arguments, **named):
+    """Return the message of a refusal, after checking that the same message is stored."""
     with pytest.raises(AnswerMismatch) as raised:
-        ask(*given, **named)
+        ask(*arguments, **named)
     assert str(raised.value) == raised.value.message
     return str(raised.value)
 
@@ -36,7 +36,7 @@ def test_require_raises_a_mismatch_with_its_message_and_details():
 
 
 @pytest.mark.parametrize(
-    ("came", "said"),
+    ("came", "message"),
     [
         (None, "the answer: expected numbers, got None; return the result"),
         ("abc", "the answer: expected one array of numbers, got str of 3"),
@@ -51,9 +51,9 @@ def test_require_raises_a_mismatch_with_its_message_and_details():
         (np.array(["a"]), "the answer: expected real numbers, got dtype <U1"),
     ],
 )
-def test_an_answer_that_is_not_an_array_of_real_numbers_is_refused(came, said, notes):
-    assert refused(numbers, came) == said and not notes
-    assert refused(numbers, came, what="w") == said.replace("the answer", "w", 1)
+def test_an_answer_that_is_not_an_array_of_real_numbers_is_refused(came, message, notes):
+    assert refused(numbers, came) == message and not notes
+    assert refused(numbers, came, what="w") == message.replace("the answer", "w", 1)
 
 
 @pytest.mark.parametrize(
@@ -64,17 +64,17 @@ def test_real_numbers_of_any_type_are_accepted(came, notes):
 
 
 @pytest.mark.parametrize(
-    ("came", "said"),
+    ("came", "message"),
     [
         ([1, 2.5], ("list of 2", "(2,)")),
         (((1, 2), (3, 4), (5, 6)), ("tuple of 3", "(3, 2)")),
         ([[True]], ("list of 1", "(1, 1)")),
     ],
 )
-def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, said, notes):
+def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, message, notes):
     assert np.array_equal(numbers(came, what="w"), np.array(came))
     (note,) = notes
-    assert note.startswith("w: ") and all(part in note for part in said)
+    assert note.startswith("w: ") and all(part in note for part in message)
 
 
 @pytest.mark.parametrize(
@@ -90,8 +90,8 @@ def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, said, notes
 )
 def test_axes_of_length_one_are_added_or_removed_with_a_note(shape, expected, notes):
     values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
-    found = compare.as_shape(values, expected)
-    assert found.shape == expected and found.ravel().tolist() == values.ravel().tolist()
+    reshaped = compare.as_shape(values, expected)
+    assert reshaped.shape == expected and reshaped.ravel().tolist() == values.ravel().tolist()
     (note,) = notes
     assert str(shape) in note and str(expected) in note
 
@@ -109,8 +109,8 @@ def test_axes_of_length_one_are_added_or_removed_with_a_note(shape, expected, no
     ],
 )
 def test_a_wrong_shape_is_refused_with_both_shapes(shape, expected, notes):
-    said = refused(compare.as_shape, np.zeros(shape), expected)
-    assert str(expected) in said and str(shape) in said and not notes
+    message = refused(compare.as_shape, np.zeros(shape), expected)
+    assert str(expected) in message and str(shape) in message and not notes
 
 
 def test_an_array_of_the_right_shape_is_returned_without_a_note(notes):
@@ -147,7 +147,7 @@ def test_at_least_one_state_is_required():
 
 
 @pytest.mark.parametrize(
-    ("came", "expected", "tolerance", "said"),
+    ("came", "expected", "tolerance", "message"),
     [
         (1.5, 1, 0.5, ""),
         (1.5, 1, 0.25, "expected 1, got 1.5; the difference may be 0.25"),
@@ -191,17 +191,17 @@ def test_at_least_one_state_is_required():
     ],
 )
 def test_values_within_the_tolerance_pass_and_the_largest_error_is_reported(
-    came, expected, tolerance, said
+    came, expected, tolerance, message
 ):
     came = np.array(came)
-    if said:
-        assert refused(same, came, expected, tolerance, what="w") == f"w: {said}"
+    if message:
+        assert refused(same, came, expected, tolerance, what="w") == f"w: {message}"
     else:
         assert same(came, expected, tolerance) is came
 
 
 @pytest.mark.parametrize(
-    ("where", "came", "said"),
+    ("where", "came", "message"),
     [
         ([True, False], [1, 7], ""),
         ([True, False], [1, np.nan], ""),
@@ -215,9 +215,9 @@ def test_values_within_the_tolerance_pass_and_the_largest_error_is_reported(
         ),
     ],
 )
-def test_values_outside_the_mask_are_ignored(where, came, said):
-    if said:
-        assert refused(same, np.array(came), [1, 2], 0, where=where) == f"the answer: {said}"
+def test_values_outside_the_mask_are_ignored(where, came, message):
+    if message:
+        assert refused(same, np.array(came), [1, 2], 0, where=where) == f"the answer: {message}"
     else:
         assert same(np.array(came), [1, 2], 0, where=where).shape == (2,)
 
@@ -252,20 +252,24 @@ def test_finite_requires_the_shape_and_finite_numbers():
     assert finite([[1, 2]], (2,)).tolist() == [1, 2]
     message = refused(finite, np.ones(3), (2,))
     assert "(2,)" in message and "(3,)" in message
-    said = refused(finite, np.array([1, np.nan, np.inf]), (3,), what="w")
-    assert said.startswith("w: ") and "2 NaN" in said
+    text = refused(finite, np.array([1, np.nan, np.inf]), (3,), what="w")
+    assert text.startswith("w: ") and "2 NaN" in text
 
 
 def test_answers_of_trusted_code_have_the_types_that_the_channel_gives():
     assert plain(None) is None and plain("ab") == "ab" and plain(b"ab") == b"ab"
-    found = plain(([1, 2.5], iter([3]), (4,), 5))
-    assert isinstance(found, tuple) and [type(one) for one in found] == [
+    plain_answer = plain(([1, 2.5], iter([3]), (4,), 5))
+    assert isinstance(plain_answer, tuple)
+    assert [type(item) for item in plain_answer] == [
         list,
         list,
         tuple,
         np.ndarray,
     ]
-    assert found[3].shape == () and found[3] == 5 and found[0][1] == 2.5 and found[1] == [3]
+    assert plain_answer[3].shape == ()
+    assert plain_answer[3] == 5
+    assert plain_answer[0][1] == 2.5
+    assert plain_answer[1] == [3]
 
 
 @pytest.mark.parametrize(

@@ -51,8 +51,8 @@ def runner(check):
     names = inspect.signature(check).parameters
 
     def run(subject, rng):
-        given = {"subject": subject, "rng": rng}
-        check(**{name: given[name] for name in names})
+        arguments = {"subject": subject, "rng": rng}
+        check(**{name: arguments[name] for name in names})
 
     return run
 
@@ -73,7 +73,7 @@ def source_of(name):
 
 
 def pasted(example, function):
-    """Return what the code of a counterexample gives in a notebook with a function, as it is shown."""
+    """Run the code of a counterexample in a notebook with a function, and return what it prints."""
     task = example.call.partition("(")[0]
     if task == "list" or task == "np.array":
         task = example.call.split("(")[1]
@@ -132,7 +132,7 @@ def test_a_right_answer_never_gets_a_counterexample(task):
 def graded(task, text, options, name="hw1"):
     """Return the result of one task's function."""
     homework = PLAN.homeworks[name]
-    tasks = tuple(one for one in homework.tasks if one.id == task)
+    tasks = tuple(candidate for candidate in homework.tasks if candidate.id == task)
     code = SubmittedCode({task: text}, (), "", ("numpy",))
     return last(grader.check_steps(code, homework._replace(tasks=tasks), options))
 
@@ -148,14 +148,14 @@ def shrink(Y):
 def test_a_counterexample_shows_nothing_of_the_inputs_that_were_drawn_with_the_secret():
     options = GradingOptions(in_process.TIER, "ada", "one secret", draw=False)
     others = replace(options, student="grace", secret="another")
-    found = [graded("shrink", CUT, each) for each in (options, others)]
+    results = [graded("shrink", CUT, grading_options) for grading_options in (options, others)]
     public = graded("shrink", CUT, GradingOptions(in_process.TIER, draw=False))
-    shown = [[check.counterexample for check in result.checks] for result in (*found, public)]
+    shown = [[check.counterexample for check in result.checks] for result in (*results, public)]
     assert any(shown[0])
     assert shown[0] == shown[1] == shown[2]
     # the messages do show numbers of the inputs, which differ
-    assert [check.message for check in found[0].checks] != [
-        check.message for check in found[1].checks
+    assert [check.message for check in results[0].checks] != [
+        check.message for check in results[1].checks
     ]
 
 
@@ -221,7 +221,7 @@ def test_a_function_that_changes_its_input_gets_the_same_counterexample():
 
 
 class Late:
-    """A subject that answers some calls, and no call after them."""
+    """A subject that answers some calls and then exceeds the time limit."""
 
     def __init__(self, function, answers):
         self.function = function
@@ -229,14 +229,14 @@ class Late:
         self.calls = []
 
     def fresh(self):
-        """Begin a new check, in which calls are answered again."""
+        """Start a new check, in which the subject answers calls again."""
         self.left = self.answers
 
     def limit_check(self, seconds):
         """Do nothing: there is no clock."""
 
     def shrink(self, Y):
-        """Answer, or be late."""
+        """Answer, or exceed the time limit."""
         self.left -= 1
         if self.left < 0:
             raise NoAnswer("shrink took longer than 5 s", "late")

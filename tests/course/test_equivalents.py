@@ -25,15 +25,17 @@ pytestmark = [
 
 
 def aside(function):
-    """Return a function whose warnings stay its own, as they do in another process: they cost nothing."""
+    """Return a function whose warnings are ignored, as in grading, where they appear in another
+    process.
+    """
 
     @wraps(function)
-    def asked(*given, **named):
+    def wrapper(*arguments, **named):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return compare.plain(function(*given, **named))
+            return compare.plain(function(*arguments, **named))
 
-    return asked
+    return wrapper
 
 
 def tasks_of(path):
@@ -44,8 +46,8 @@ def tasks_of(path):
 def keeps_every_promise(functions, tasks, student):
     subject = inprocess.Subject({task: aside(functions[task]) for task in tasks})
     for task in tasks:
-        share, said = scoring.score(task, subject, plan.seed("secret", student, task))
-        assert share == 1, (task, {name: str(error) for name, error in said.items() if error})
+        share, outcomes = scoring.score(task, subject, plan.seed("secret", student, task))
+        assert share == 1, (task, {name: str(error) for name, error in outcomes.items() if error})
 
 
 @pytest.mark.parametrize("student", ["ada", "grace"])
@@ -58,13 +60,13 @@ def test_an_equivalent_solution_passes_every_check(path, student):
 
 
 def reversed_order(cells):
-    """The cells in the opposite order: helpers stand below what uses them."""
+    """The cells in reverse order: helpers are below the functions that use them."""
     return cells[::-1], "hw.ipynb"
 
 
 def helpers_apart(cells):
-    """Every statement in a cell of its own, with cells between that nobody asked for; the file is renamed."""
-    split = [ast.unparse(one) for cell in cells for one in ast.parse(cell).body]
+    """Every statement in its own cell, with unrelated cells between them; the file is renamed."""
+    split = [ast.unparse(statement) for cell in cells for statement in ast.parse(cell).body]
     between = [
         "unused = [n**2 for n in range(9)]",
         "def plot_it(x):\n    return x",
@@ -78,19 +80,19 @@ def printing(cells):
 
     class Talk(ast.NodeTransformer):
         def visit_FunctionDef(self, node):
-            said = (
+            errors = (
                 f"import sys, warnings\nprint('in {node.name}')\n"
                 f"print('to stderr', file=sys.stderr)\nwarnings.warn('{node.name} is slow', stacklevel=2)"
             )
             first = 1 if ast.get_docstring(node) else 0
-            node.body[first:first] = ast.parse(said).body
+            node.body[first:first] = ast.parse(errors).body
             return node
 
     return [ast.unparse(Talk().visit(ast.parse(cell))) for cell in cells], "hw.ipynb"
 
 
 def as_one_script(cells):
-    """A Python file without any cells."""
+    """A Python file without cells."""
     return ["\n\n".join(cells)], "solution.py"
 
 
@@ -105,14 +107,14 @@ def test_the_same_code_in_another_notebook_layout_passes_every_check(path, way, 
     cells, name = way([cell.text for cell in reader.cells_of(path.read_bytes(), path.name)[0]])
     handed_in = tmp_path / name
     handed_in.write_text(notebook(cells) if name.endswith(".ipynb") else cells[0], encoding="utf8")
-    found = reader.tasks_of(handed_in, tasks_of(path))
-    assert set(found.sources) == set(tasks_of(path)), found.problems
+    sources = reader.tasks_of(handed_in, tasks_of(path))
+    assert set(sources.sources) == set(tasks_of(path)), sources.problems
     functions = {}
-    for task, source in found.sources.items():
+    for task, source in sources.sources.items():
         names = {"__name__": "a student's module"}
         exec(source, names)
         functions[task] = names[task]
-    keeps_every_promise(functions, found.sources, "ada")
+    keeps_every_promise(functions, sources.sources, "ada")
     assert ("to stderr" in capsys.readouterr().err) == (way is printing)
 
 
@@ -124,7 +126,7 @@ def notebook(cells):
 
 @pytest.mark.parametrize("homework", HOMEWORKS)
 def test_every_homework_has_more_than_five_equivalents(homework):
-    """They solve the whole homework, or, as `test_fairness` asks them, each of its tasks alone."""
+    """They solve a whole homework, or a single task of it, as in `test_fairness`."""
     wholes = [path for path in FILES if path.stem.startswith(f"{homework}_")]
     answers = [len(list(RIGHT.glob(f"{task.id}/*.py"))) for task in HOMEWORKS[homework].tasks]
     assert max(len(wholes) + len(WAYS), min(answers)) > 5
@@ -133,7 +135,10 @@ def test_every_homework_has_more_than_five_equivalents(homework):
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_the_equivalents_import_only_numpy_scipy_and_the_standard_library(path):
     for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        names += [node.module] if isinstance(node, ast.ImportFrom) else []
+        names = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [node.module]
         for name in names:
             assert name.split(".")[0] in {"numpy", "scipy"} | set(sys.stdlib_module_names)

@@ -22,8 +22,8 @@ pytestmark = [
 ]
 
 
-def asked(path):
-    """Return what share of its task's points an answer gets, and what each check says."""
+def score_answer(path):
+    """Return the fraction of its task's points that an answer gets, and the error of each check."""
     task = path.parent.name
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # 0 / 0, as it may well happen in a student's process
@@ -38,8 +38,8 @@ WAYS = sorted(
 
 @pytest.mark.parametrize("path", WAYS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_a_correct_solution_written_from_the_assignment_passes_every_check(path):
-    share, said = asked(path)
-    assert share == 1, {name: str(error) for name, error in said.items() if error}
+    share, outcomes = score_answer(path)
+    assert share == 1, {name: str(error) for name, error in outcomes.items() if error}
 
 
 @pytest.mark.parametrize(
@@ -62,13 +62,11 @@ def test_other_lists_are_not_accepted(came):
 
 
 def test_the_fairness_benchmark_gives_the_same_points_and_mistake_as_check():
-    """Both have a sandbox, and one of them pytest."""
+    """Both use a sandbox, and one of them pytest."""
     fairness = pytest.importorskip("benchmarks.fairness")
-    way, whole_sheet, task = (
-        "hat_zero_in_the_middle",
-        plan.read().homeworks["hw2"],
-        plan.read().task("hat"),
-    )
+    way = "hat_zero_in_the_middle"
+    whole_sheet = plan.read().homeworks["hw2"]
+    task = plan.read().task("hat")
     homework = whole_sheet._replace(tasks=(task,))
     source = solutions.texts(homework, [way])["hat"]
     conditions = plan.GradingOptions("practice", "student 1", "fairness", draw=False)
@@ -76,9 +74,9 @@ def test_the_fairness_benchmark_gives_the_same_points_and_mistake_as_check():
     *_, result = grader.check_steps(read, homework, conditions)
     _, second = fairness.graded((homework, {"hat": (way, source)}, 2))
     earned, whole = results.points(result.of("hat"))
-    assert (
-        second.share == earned / whole < 1
-        and second.named == (way,)
-        and "hat" in result.misconceptions
-    )
-    assert list(second.broken) == [one.name for one in result.of("hat") if one.outcome != "holds"]
+    assert second.share == earned / whole < 1
+    assert second.named == (way,)
+    assert "hat" in result.misconceptions
+    assert list(second.broken) == [
+        check.name for check in result.of("hat") if check.outcome != "holds"
+    ]

@@ -15,24 +15,27 @@ from hdrlab.course.plan import GradingOptions
 from hdrlab.course.submissions.reader import SubmittedCode
 
 PLAN = plan.read()
-NOTHING = SubmittedCode({}, (), "")
-WITH, WITHOUT = GradingOptions("strict", "ada", "salt"), GradingOptions("strict", "ada")
+EMPTY_SUBMISSION = SubmittedCode({}, (), "")
+WITH = GradingOptions("strict", "ada", "salt")
+WITHOUT = GradingOptions("strict", "ada")
 IDS = [task.id for homework in PLAN.homeworks.values() for task in homework.tasks]
 # a constant answer may divide by 0
 pytestmark = [pytest.mark.grading, pytest.mark.filterwarnings("ignore")]
 
 
 def filled(answer, value):
-    """Return an answer of the right form in which every number is another one; bytes have no form."""
+    """Return an answer of the same form in which every number is replaced; bytes stay."""
     if isinstance(answer, tuple | list):
-        return type(answer)(filled(one, value) for one in answer)
+        return type(answer)(filled(item, value) for item in answer)
     return b"" if isinstance(answer, bytes) else value(np.asarray(answer))
 
 
 def of_the_right_form(value):
     def cheat(task):
         right = plan.function(PLAN.task(task))
-        return lambda *given, **named: filled(inprocess.plain(right(*given, **named)), value)
+        return lambda *arguments, **named: filled(
+            inprocess.plain(right(*arguments, **named)), value
+        )
 
     return cheat
 
@@ -44,11 +47,11 @@ CHEATS = {
         lambda x: np.full(x.shape, 0.5 if x.dtype.kind == "f" else 128).astype(x.dtype)
     ),
     "a ramp": of_the_right_form(lambda x: np.linspace(0, 1, x.size).reshape(x.shape)),
-    "the input": lambda task: lambda first, *given, **named: first,
+    "the input": lambda task: lambda first, *others, **named: first,
     "the input and nothing": lambda task: (
-        lambda first, *given, **named: (first, np.zeros_like(first))
+        lambda first, *others, **named: (first, np.zeros_like(first))
     ),
-    "the input as a state": lambda task: lambda first, *given, **named: [first] * 3,
+    "the input as a state": lambda task: lambda first, *others, **named: [first] * 3,
 }
 
 
@@ -70,7 +73,7 @@ def test_a_trivial_answer_earns_at_most_a_tenth_of_the_points(task, cheat):
         ("align", lambda images, bits=6: np.cumsum(np.ones((len(images), 2)), axis=0), 0.1),
         ("tonemap", lambda L: np.full(np.shape(L), 0.5, np.float32), 0.0),
         ("adjust_steps", lambda h, db, D, **named: [np.minimum(h, 1.0)], 0.0),
-        ("count", lambda *given, **named: 1, 0.1),
+        ("count", lambda *arguments, **named: 1, 0.1),
     ],
 )
 def test_a_plausible_answer_without_the_method_earns_little(task, cheat, most):
@@ -92,14 +95,15 @@ def known():
 
 
 def best(Z, B):
-    """Return the public g that contradicts the samples Z (N, P) least."""
+    """Return the published g that agrees best with the samples Z (N, P)."""
     seen = np.where((Z > 20) & (Z < 235), 1.0, np.nan)
-    each = [np.nanmean(np.nanstd((g[Z] - B) * seen, axis=1)) for g in known()]
-    return known()[int(np.argmin(each))]
+    deviations = [np.nanmean(np.nanstd((g[Z] - B) * seen, axis=1)) for g in known()]
+    return known()[int(np.argmin(deviations))]
 
 
 def gsolve(Z, B, smoothness, w):
-    Z, n = np.asarray(Z), len(w)
+    Z = np.asarray(Z)
+    n = len(w)
     g = best(Z * (256 // n), B)[:: 256 // n]
     mass = w[Z] + 1e-9
     return g, (mass * (g[Z] - B)).sum(axis=1) / mass.sum(axis=1)
@@ -132,10 +136,10 @@ def test_hard_coded_curves_earn_little(student):
 @pytest.mark.parametrize("task", ["gsolve", "recover", "recover_steps"])
 def test_the_library_passes_with_the_camera_of_any_student(task):
     for student in range(3):
-        share, said = scoring.score(
+        share, outcomes = scoring.score(
             task, inprocess.library(), plan.seed("secret", f"b{student}", task)
         )
-        assert share == 1, (student, said)
+        assert share == 1, (student, outcomes)
 
 
 @pytest.mark.parametrize(("student", "secret"), [("", ""), ("ada", ""), ("", "salt")])
@@ -164,7 +168,7 @@ def test_a_check_earns_nothing_if_the_check_that_it_needs_fails(tmp_path):
     result = grader.grade(
         tmp_path / "hw4.py", homework, GradingOptions("practice", "ada", "salt", draw=False)
     )
-    of = {one.name: one for one in result.checks}
+    of = {check.name: check for check in result.checks}
     unit = of["test_the_unit_of_luminance_cancels"]
     assert unit.outcome == "holds" and unit.points == 0 and "1" not in unit.message
     assert "too: It is one over k times the blur" in unit.message

@@ -19,7 +19,7 @@ HERE = Path(__file__).parents[1]
 HOMEWORKS = plan.read().homeworks
 OF_TASK = {task.id: name for name, homework in HOMEWORKS.items() for task in homework.tasks}
 KNOWN = misconceptions.known()
-HW2 = [one for one in KNOWN if OF_TASK[one.task] == "hw2"]
+HW2 = [mistake for mistake in KNOWN if OF_TASK[mistake.task] == "hw2"]
 
 
 def function(name, task, cells, folder):
@@ -32,33 +32,37 @@ def function(name, task, cells, folder):
     return scope[task]
 
 
-@pytest.mark.parametrize("one", KNOWN, ids=[one.name for one in KNOWN])
-def test_a_known_mistake_runs_without_hdrlab(one, tmp_path):
-    cells = solutions.texts(HOMEWORKS[OF_TASK[one.task]], [one.name])
+@pytest.mark.parametrize("mistake", KNOWN, ids=[mistake.name for mistake in KNOWN])
+def test_a_known_mistake_runs_without_hdrlab(mistake, tmp_path):
+    cells = solutions.texts(HOMEWORKS[OF_TASK[mistake.task]], [mistake.name])
     for text in cells.values():
         for node in ast.walk(ast.parse(text)):
-            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            names += [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = [str(node.module)]
             assert not any(name.startswith("hdrlab") for name in names)
-    assert callable(function(one.name, one.task, cells, tmp_path))
+    assert callable(function(mistake.name, mistake.task, cells, tmp_path))
 
 
 @cache
 def small(task):
-    """Return the two smallest questions of a task's checks, as (arguments, named arguments)."""
+    """Return the two smallest inputs of a task's checks, as (arguments, named arguments)."""
     library = inprocess.library()
     scoring.score(task, library)
-    sizes = [sum(np.size(one) for one in given) for given, _, _ in library.calls]
+    sizes = [sum(np.size(array) for array in arguments) for arguments, _, _ in library.calls]
     return [library.calls[k][:2] for k in np.argsort(sizes, kind="stable")[:2]]
 
 
-@pytest.mark.parametrize("one", HW2, ids=[one.name for one in HW2])
-def test_an_inlined_mistake_gives_the_same_answers_as_its_function(one, tmp_path):
-    wrong = function(one.name, one.task, solutions.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
-    for given, named in small(one.task):
-        came, filed = (
-            misconceptions.call_quietly(asked, given, named) for asked in (wrong, one.function)
-        )
+@pytest.mark.parametrize("mistake", HW2, ids=[mistake.name for mistake in HW2])
+def test_an_inlined_mistake_gives_the_same_answers_as_its_function(mistake, tmp_path):
+    wrong = function(
+        mistake.name, mistake.task, solutions.texts(HOMEWORKS["hw2"], [mistake.name]), tmp_path
+    )
+    for arguments, named in small(mistake.task):
+        came = misconceptions.call_quietly(wrong, arguments, named)
+        filed = misconceptions.call_quietly(mistake.function, arguments, named)
         assert filed is not None and misconceptions.difference(came, filed) == 0
 
 
@@ -70,8 +74,8 @@ def test_without_a_mistake_the_submission_is_the_solution(homework, tmp_path):
         ("a.py", solutions.script(cells)),
     ):
         (tmp_path / name).write_text(text, encoding="utf8")
-        found = reader.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
-        assert set(found.sources) == {task.id for task in homework.tasks}
-        assert not any("is yours to write" in source for source in found.sources.values())
+        submission = reader.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
+        assert set(submission.sources) == {task.id for task in homework.tasks}
+        assert not any("is yours to write" in source for source in submission.sources.values())
     handout = (HERE.parent / "assignments" / f"{homework.name}.ipynb").read_text(encoding="utf8")
     assert solutions.notebook(homework) == handout

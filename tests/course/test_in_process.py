@@ -41,7 +41,7 @@ def wrong_answers(id):
 
 
 def outcomes_of(id, text, tier):
-    """Return what the checks of a tier say about a task's function."""
+    """Return the outcomes of the checks of a task's function in a tier."""
     homework, task = TASKS[id]
     sources, problems = closure.extract_sources([closure.Cell(text)], [id])
     modules = tuple(names.imported_numpy_modules(sources.values()))
@@ -149,9 +149,9 @@ def test_check_in_a_notebook_runs_without_processes_where_there_are_none(monkeyp
     monkeypatch.setattr(notebook, "PRACTICE", GradingOptions(tier=in_process.TIER))
     monkeypatch.setattr("subprocess.Popen", None)
     monkeypatch.setattr(shell.history_manager, "input_hist_raw", ["", right])
-    found = notebook.check("hat")
-    assert found.points == found.result.max_score
-    assert "not for credit" in found.result.why_practice
+    report = notebook.check("hat")
+    assert report.points == report.result.max_score
+    assert "not for credit" in report.result.why_practice
 
 
 def test_grading_a_file_without_processes_gives_a_clear_message(tmp_path, monkeypatch):

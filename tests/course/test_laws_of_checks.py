@@ -77,7 +77,7 @@ def simple(L):
 
 
 def shown(L, *, sign=1, stripes=0.0, boost=0.0):
-    """A picture of the mean light of each region, in stripes that cancel within one."""
+    """An image with the mean light of each region, in stripes that cancel within a region."""
     log = (
         np.log(np.maximum(L, 1e-9))
         .reshape(6, 16, 8, 16)
@@ -143,12 +143,13 @@ FACTORS = [(2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 2e-4), (5.1e7, 2e-4)]
 @pytest.mark.parametrize(("factor", "allowed"), FACTORS)
 @pytest.mark.parametrize("name", ["a scene", "a scene with zeros"])
 def test_an_exposure_may_move_a_picture_by_as_much_as_its_factor_allows(factor, allowed, name):
-    L, came = laws.RADIANCES[name] * np.float32(factor), []
+    L = laws.RADIANCES[name] * np.float32(factor)
+    came = []
 
     def moved(error):
-        def tonemap(asked):
-            came.append(asked.max())
-            return np.full(asked.shape, error if np.array_equal(asked, L) else 0.0)
+        def tonemap(radiance):
+            came.append(radiance.max())
+            return np.full(radiance.shape, error if np.array_equal(radiance, L) else 0.0)
 
         return tonemap
 
@@ -156,14 +157,16 @@ def test_an_exposure_may_move_a_picture_by_as_much_as_its_factor_allows(factor, 
     with pytest.raises(AssertionError):
         laws.exposure(moved(1.01 * allowed))
     whole = laws.scene().max()
-    assert came[:10] == [whole, whole, *(whole * np.float32(one) for one, _ in FACTORS * 2)]
+    assert came[:10] == [whole, whole, *(whole * np.float32(step) for step, _ in FACTORS * 2)]
 
 
-# A response that nobody has seen, and how far a curve is from it
+# A random response, and the distance of a curve from it
 
 
 class Drawn:
-    """What is drawn: a gamma of 2, a shoulder of 1/2, no toe, and a quarter of film."""
+    """A fake random generator that draws a gamma of 2, a shoulder of 1/2, no toe, and a quarter of
+    film.
+    """
 
     def uniform(self, low, high):
         self.bounds = low, high

@@ -11,7 +11,8 @@ from hdrlab.course.checks import misconceptions
 from hdrlab.course.checks.misconceptions import MAX_DIFFERENCE, closest, difference, in_gauge
 from hdrlab.course.checks.mistakes import KnownMistake, mistake
 
-NAN, INF = np.nan, np.inf
+NAN = np.nan
+INF = np.inf
 
 
 @pytest.mark.parametrize(
@@ -111,17 +112,19 @@ TASK = plan.Task("merge", "radiance.debevec.merge", 1)
 
 @pytest.fixture
 def named(monkeypatch):
-    """named({name: answer}, came, right) -> the name of the mistake that an answer shows; right is 1."""
+    """named({name: answer}, came, right) -> the name of the mistake that explains an answer."""
 
     def named(answers, *came, right=1.0):
         mistakes = [
-            KnownMistake(name=name, task="merge", sentence="", function=lambda k, one=one: one)
-            for name, one in answers.items()
+            KnownMistake(
+                name=name, task="merge", sentence="", function=lambda k, answer=answer: answer
+            )
+            for name, answer in answers.items()
         ]
         monkeypatch.setattr(misconceptions, "of_task", lambda task: mistakes)
         monkeypatch.setattr(plan, "function", lambda task: lambda k: right)
-        found = closest(TASK, [((k,), {}, one) for k, one in enumerate(came)])
-        return found and found.name
+        mistake_found = closest(TASK, [((k,), {}, answer) for k, answer in enumerate(came)])
+        return mistake_found and mistake_found.name
 
     return named
 
@@ -197,9 +200,14 @@ def test_the_mistakes_of_a_task_are_its_own_and_those_in_method_miss_what_it_is_
     for place, value in (("vignette_b.py", 2), ("method/vignette_a.py", 1), ("other_a.py", 0)):
         text = f'"""Mistake\n\nnumber {value}."""\ndef vignette():\n    return {value}\n'
         (tmp_path / "mistakes" / place).write_text(text, encoding="utf8")
-    found = misconceptions.of_task(plan.Task("vignette", f"{tmp_path / 'vignette.py'}:vignette", 1))
-    told = [(one.name, one.task, one.sentence, one.function(), one.misses_method) for one in found]
-    assert told == [
+    mistakes = misconceptions.of_task(
+        plan.Task("vignette", f"{tmp_path / 'vignette.py'}:vignette", 1)
+    )
+    texts = [
+        (mistake.name, mistake.task, mistake.sentence, mistake.function(), mistake.misses_method)
+        for mistake in mistakes
+    ]
+    assert texts == [
         ("vignette_a", "vignette", "Mistake number 1.", 1, True),
         ("vignette_b", "vignette", "Mistake number 2.", 2, False),
     ]
@@ -228,15 +236,16 @@ def test_a_mistake_replaces_the_solution_of_its_task_alone():
 
 
 def test_a_wrong_hat_answers_in_the_form_of_the_right_one():
-    hat = [one for one in misconceptions.known() if one.task == "hat"]
+    hat = [mistake for mistake in misconceptions.known() if mistake.task == "hat"]
     right = plan.function(plan.read().task("hat"))()
-    assert hat and all(np.shape(one.function()) == right.shape for one in hat)
+    assert hat and all(np.shape(mistake.function()) == right.shape for mistake in hat)
 
 
 def test_a_mistake_in_a_variant_is_a_change_of_that_variants_solution():
     task = plan.read().task("exclusion")._replace(variant="compared/above/six")
     image = np.uint8([[100, 113, 114, 120, 126, 127, 200]])
-    (strange, *_), given = misconceptions.of_task(task), (image, 120)
-    assert strange.function(*given).shape == image.shape
-    others = [one.function(*given) for one in misconceptions.of_task(task)]
-    assert any(not np.array_equal(one, plan.function(task)(*given)) for one in others)
+    strange, *_ = misconceptions.of_task(task)
+    arguments = (image, 120)
+    assert strange.function(*arguments).shape == image.shape
+    others = [mistake.function(*arguments) for mistake in misconceptions.of_task(task)]
+    assert any(not np.array_equal(mistake, plan.function(task)(*arguments)) for mistake in others)

@@ -16,28 +16,28 @@ HERE = SPECIFICATION
 
 
 def unanswered():
-    """A stub, as it is handed out."""
+    """A stub, as in the assignment."""
     raise NotImplementedError
 
 
 @pytest.mark.parametrize("task", IDS)
 @pytest.mark.parametrize("student", ["ada", "grace", "Emmy Noether"])
 def test_the_library_passes_every_check_for_any_student(task, student):
-    share, said = scoring.score(
+    share, outcomes = scoring.score(
         task, inprocess.library(), plan.seed("the course's secret", student, task)
     )
-    assert share == 1, {name: str(error) for name, error in said.items() if error}
+    assert share == 1, {name: str(error) for name, error in outcomes.items() if error}
 
 
 @pytest.mark.grading
 @pytest.mark.parametrize("task", IDS)
 def test_a_blank_stub_passes_no_check(task):
     for blank in (
-        lambda *given, **named: None,
-        lambda *given, **named: unanswered(),
-        lambda *given, **named: np.nan,
-        lambda *given, **named: [],
-        lambda *given, **named: "",
+        lambda *arguments, **named: None,
+        lambda *arguments, **named: unanswered(),
+        lambda *arguments, **named: np.nan,
+        lambda *arguments, **named: [],
+        lambda *arguments, **named: "",
     ):
         assert scoring.score(task, inprocess.Subject({task: blank}))[0] == 0
 
@@ -46,7 +46,7 @@ def test_a_blank_stub_passes_no_check(task):
 def test_an_answer_of_nan_earns_no_points(task):
     def spoiled(answer):
         if isinstance(answer, tuple | list):
-            return type(answer)(spoiled(one) for one in answer)
+            return type(answer)(spoiled(item) for item in answer)
         if isinstance(answer, bytes):
             return b""
         return np.full(np.shape(answer), np.nan)
@@ -58,14 +58,15 @@ def test_an_answer_of_nan_earns_no_points(task):
 
 @pytest.mark.parametrize("task", IDS)
 def test_every_check_has_points_three_hints_and_a_sentence(task):
-    found = scoring.checks(task)
-    assert len(found) >= 2
-    for name, check, points, hints, needs in found:
-        assert needs is None or (needs != name and needs in {one for one, *_ in found}), name
+    checks = scoring.checks(task)
+    assert len(checks) >= 2
+    names = {name for name, *_ in checks}
+    for name, check, points, hints, needs in checks:
+        assert needs is None or (needs != name and needs in names), name
         assert points > 0 and len(hints) == 3 and all(len(hint) > 10 for hint in hints), name
         assert len(name.removeprefix("test_").split("_")) >= 4, f"{name} is no sentence"
         assert set(inspect.signature(check).parameters) <= {"subject", "rng"}, name
-    assert len({hints[-1] for *_, hints, _ in found}) == len(found), "a hint stands twice"
+    assert len({hints[-1] for *_, hints, _ in checks}) == len(checks), "a hint stands twice"
 
 
 def test_there_is_a_file_of_checks_for_every_task_and_a_task_for_every_file():
@@ -88,14 +89,14 @@ def test_the_functions_of_a_homework_have_names_of_their_own(homework):
 @pytest.mark.grading
 @pytest.mark.parametrize("task", IDS)
 def test_two_students_draw_different_inputs_and_one_draws_the_same_again(task):
-    def asked(student):
+    def inputs_of(student):
         subject = inprocess.library()
         scoring.score(task, subject, plan.seed("secret", student, task))
-        return repr([(given, named) for given, named, _ in subject.calls])
+        return repr([(arguments, named) for arguments, named, _ in subject.calls])
 
-    assert asked("ada") == asked("ada")
+    assert inputs_of("ada") == inputs_of("ada")
     if any("rng" in inspect.signature(check).parameters for _, check, *_ in scoring.checks(task)):
-        assert asked("ada") != asked("grace")
+        assert inputs_of("ada") != inputs_of("grace")
 
 
 # The plan
@@ -116,15 +117,15 @@ tasks = [{ id = "gsolve", function = "response.debevec.gsolve", points = 7.5 }]
 
 
 def test_a_plan_of_an_instructor_sets_points_tasks_and_dates(tmp_path):
-    found = plan.read(written(tmp_path, SHEET))
-    (homework,) = found.homeworks.values()
+    plan_read = plan.read(written(tmp_path, SHEET))
+    (homework,) = plan_read.homeworks.values()
     assert (homework.title, homework.points, homework.due.day) == ("Curves", 7.5, 1)
     assert homework.tasks == (plan.Task("gsolve", "response.debevec.gsolve", 7.5),)
-    assert found.late == plan.Late(0, 0) and plan.read().late.free_days == 10
+    assert plan_read.late == plan.Late(0, 0) and plan.read().late.free_days == 10
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (('title = "Curves"', ""), r"title.*\[hw9\]"),
         (("2026-10-01T12:00:00Z", '"soon"'), "due.*soon"),
@@ -145,8 +146,8 @@ def test_a_plan_of_an_instructor_sets_points_tasks_and_dates(tmp_path):
         (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "free_days and points_a_day"),
     ],
 )
-def test_an_invalid_plan_is_refused_with_the_reason(tmp_path, change, said):
-    with pytest.raises(ValueError, match=said):
+def test_an_invalid_plan_is_refused_with_the_reason(tmp_path, change, message):
+    with pytest.raises(ValueError, match=message):
         plan.read(written(tmp_path, SHEET.replace(*change)))
 
 
@@ -156,13 +157,13 @@ def test_an_unknown_task_is_refused_with_the_known_ones():
 
 
 def test_a_seed_depends_on_the_secret_the_student_and_the_task():
-    one = plan.seed("secret", "ada", "gsolve")
+    seed = plan.seed("secret", "ada", "gsolve")
     others = [
         plan.seed("Secret", "ada", "gsolve"),
         plan.seed("secret", "adag", "solve"),
         plan.seed("secret", "ada", "merge"),
     ]
-    assert one == plan.seed("secret", "ada", "gsolve") and len({one, *others}) == 4
+    assert seed == plan.seed("secret", "ada", "gsolve") and len({seed, *others}) == 4
 
 
 @pytest.mark.parametrize("size", [256, 4096])
@@ -176,7 +177,7 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
 
 
 @pytest.mark.parametrize(
-    ("came", "said"),
+    ("came", "message"),
     [
         *(
             (None, "expected numbers, got None"),
@@ -189,6 +190,6 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
         ),
     ],
 )
-def test_a_non_numeric_answer_is_described_in_the_message(came, said):
-    with pytest.raises(compare.AnswerMismatch, match=said):
+def test_a_non_numeric_answer_is_described_in_the_message(came, message):
+    with pytest.raises(compare.AnswerMismatch, match=message):
         compare.numbers(came)
