@@ -33,41 +33,44 @@ def read(tmp_path):
 
 @pytest.fixture
 def rows(read):
-    """rows(text) -> the gradebook's rows by student, with the adjustments of a table."""
+    """rows(text) -> the rows of the gradebook by student, with the adjustments of this table."""
 
     def with_adjustments(text):
         course = classroom.GradingContext(
             ROSTER, HOMEWORK, GradingOptions(), Late(0, 10.0), adjustments=read(text)
         )
-        found = marks.gradebook_rows(course, SUBMISSIONS, POINTS)
-        return {row.student: row for row in found}
+        gradebook = marks.gradebook_rows(course, SUBMISSIONS, POINTS)
+        return {row.student: row for row in gradebook}
 
     return with_adjustments
 
 
 def test_an_extension_moves_the_due_date_of_one_student_only(rows):
-    found = rows("student,extension\nb1,2\n")
-    assert [(found[who].late, found[who].score) for who in ("b1", "b2")] == [(1, 70), (3, 50)]
-    assert "extension of 2 days" in found["b1"].note and not found["b2"].note
+    gradebook = rows("student,extension\nb1,2\n")
+    assert [(gradebook[who].late, gradebook[who].score) for who in ("b1", "b2")] == [
+        (1, 70),
+        (3, 50),
+    ]
+    assert "extension of 2 days" in gradebook["b1"].note and not gradebook["b2"].note
 
 
 def test_points_by_hand_are_added_after_the_penalty_and_may_be_extra_credit(rows):
-    found = rows("student,points\nb1,5\nb2,-60\nb3,12.5\n")
-    assert [found[who].score for who in ("b1", "b2", "b3")] == [55, 0, 107.5]
-    assert found["b3"].by_hand == 12.5
+    gradebook = rows("student,points\nb1,5\nb2,-60\nb3,12.5\n")
+    assert [gradebook[who].score for who in ("b1", "b2", "b3")] == [55, 0, 107.5]
+    assert gradebook["b3"].by_hand == 12.5
 
 
 def test_a_held_score_is_in_the_gradebook_and_in_no_table_for_a_platform(rows):
-    found = rows("student,hold\nB3,yes\n")
-    assert found["b3"].score == 95
-    lines = list(found.values())
+    gradebook = rows("student,hold\nB3,yes\n")
+    assert gradebook["b3"].score == 95
+    lines = list(gradebook.values())
     _, canvas = marks.canvas_table(lines, HOMEWORK)
     _, table = moodle.gradebook(lines, ROSTER, HOMEWORK)
     assert [row[-1] for row in canvas[1:]] == [row[-1] for row in table] == [50, 50, None]
 
 
 def test_a_comment_reaches_its_student_in_moodle_and_no_other_comment_is_lost(rows, tmp_path):
-    found = rows("student,comment,hold\nb1,Good curve.,\nb3,Talk to me.,yes\n")
+    gradebook = rows("student,comment,hold\nb1,Good curve.,\nb3,Talk to me.,yes\n")
     header = (
         *("Identifier", "ID number", "Grade", "Maximum grade", "Last modified (grade)"),
         "Feedback comments",
@@ -77,7 +80,7 @@ def test_a_comment_reaches_its_student_in_moodle_and_no_other_comment_is_lost(ro
         for number, who in enumerate(("b1", "b2", "b3"), 1)
     ]
     csv_tables.write_csv(tmp_path / "sheet.csv", header, lines)
-    moodle.write(tmp_path, tmp_path / "sheet.csv", list(found.values()), ROSTER, HOMEWORK)
+    moodle.write(tmp_path, tmp_path / "sheet.csv", list(gradebook.values()), ROSTER, HOMEWORK)
     with open(tmp_path / "moodle_worksheet.csv", encoding="utf-8-sig", newline="") as file:
         written = list(csv.DictReader(file))
     assert [row["Feedback comments"] for row in written] == ["Good curve.", "Earlier.", "Earlier."]
@@ -114,11 +117,11 @@ def test_points_by_hand_reach_moodle_also_without_a_submission(read, tmp_path):
 
 
 def test_the_gradebook_can_be_read_as_that_of_an_earlier_homework(rows, tmp_path):
-    found = rows("student,extension,points,comment,hold\nb1,2,5,Good.,yes\n")
-    cells = [row.cells for row in found.values()]
+    gradebook = rows("student,extension,points,comment,hold\nb1,2,5,Good.,yes\n")
+    cells = [row.cells for row in gradebook.values()]
     csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, cells)
     records = marks.read([tmp_path / "gradebook.csv"])
-    assert [(one.students, one.late, one.points) for one in records] == [
+    assert [(record.students, record.late, record.points) for record in records] == [
         (("b1",), 1, 80),
         (("b2",), 3, 80),
         (("b3",), 0, 95),
@@ -126,7 +129,7 @@ def test_the_gradebook_can_be_read_as_that_of_an_earlier_homework(rows, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("student,grade\nb1,3\n", "expected the column student and any of"),
         ("student,points\nb9,3\n", "line 2.*'b9'"),
@@ -137,8 +140,8 @@ def test_the_gradebook_can_be_read_as_that_of_an_earlier_homework(rows, tmp_path
         ("student,hold\nb1,maybe\n", "line 2.*'hold'.*'maybe'"),
     ],
 )
-def test_an_error_names_the_line_and_the_column(text, said, read):
-    with pytest.raises(ValueError, match=said):
+def test_an_error_names_the_line_and_the_column(text, message, read):
+    with pytest.raises(ValueError, match=message):
         read(text)
 
 

@@ -41,8 +41,8 @@ FORBIDDEN_AS_WRITTEN = ("Ada", "Bo Ng", "Max", "Alexander", "Grace")
 
 
 def leaks(text):
-    found = [word for word in FORBIDDEN if word in text.lower()]
-    return found + [word for word in FORBIDDEN_AS_WRITTEN if re.search(rf"\b{word}\b", text)]
+    words = [word for word in FORBIDDEN if word in text.lower()]
+    return words + [word for word in FORBIDDEN_AS_WRITTEN if re.search(rf"\b{word}\b", text)]
 
 
 @pytest.fixture(scope="module")
@@ -127,7 +127,7 @@ def test_code_that_python_cannot_read_is_treated_as_text(names):
 
 
 def notebook(*cells):
-    """Return a notebook of (kind, text), with outputs that tell who wrote it."""
+    """Return a notebook of (kind, text), with outputs that reveal the author."""
     written = []
     for number, (kind, text) in enumerate(cells):
         cell = {"cell_type": kind, "id": f"c{number}", "metadata": {}, "source": text}
@@ -160,7 +160,7 @@ WORDS = (
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory):
-    """A class that was graded anonymously, and later with names: its folder, and both outputs."""
+    """A class graded anonymously, and then with names: its folder, and both outputs."""
     folder = tmp_path_factory.mktemp("class")
     (folder / "roster.csv").write_text(ROSTER_TEXT, encoding="utf8")
     (folder / "plan.toml").write_text(PLAN)
@@ -179,7 +179,7 @@ def graded(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def run(graded):
-    """run(words) -> what a command prints, in the folder of the class."""
+    """run(words) -> the output of a command in the folder of the class."""
 
     def run_command(words):
         ran = subprocess.run(
@@ -197,14 +197,14 @@ def run(graded):
 
 @pytest.fixture(scope="module")
 def anonymous(graded, run):
-    """The anonymous folder of the class, and what the command printed."""
-    said = run(f"{WORDS} --received times.csv --anonymous")
-    return graded / "out" / "anonymous", said
+    """The anonymous folder of the class, and the output of the command."""
+    output = run(f"{WORDS} --received times.csv --anonymous")
+    return graded / "out" / "anonymous", output
 
 
 @pytest.mark.grading
 def test_nothing_that_an_anonymous_reader_opens_has_a_name(anonymous, graded):
-    folder, said = anonymous
+    folder, output = anonymous
     files = [path for path in folder.rglob("*") if path.is_file()]
     names = {path.name for path in files}
     assert {"class.html", "gradebook.csv", "points.csv", "similar.html", "feedback.html"} <= names
@@ -212,8 +212,8 @@ def test_nothing_that_an_anonymous_reader_opens_has_a_name(anonymous, graded):
     for path in files:
         assert not leaks(path.read_text(encoding="utf8")), path
         assert not leaks(str(path.relative_to(graded)))
-    assert not leaks(said), said
-    assert "1 of 5 students are late: S" in said
+    assert not leaks(output), output
+    assert "1 of 5 students are late: S" in output
 
 
 @pytest.mark.grading
@@ -271,10 +271,10 @@ def test_the_names_come_back_with_the_points_that_a_reader_wrote_beside_the_code
         row["points"] = "7.5" if row["student"] == codes["b0123"] else "1"
     lines = [list(row.values()) for row in rows]
     csv_tables.write_csv(table, ["student", "points", "comment", "hold"], lines)
-    said = run(f"{WORDS} --received times.csv --anonymous")  # keeps what was filled in
-    assert "0 of them now" in said and "7.5" in table.read_text()
-    said = run(f"{WORDS} --received times.csv --adjustments out/anonymous/points.csv")
-    assert "3 of 3 graded, 0 of them now" in said
+    output = run(f"{WORDS} --received times.csv --anonymous")  # keeps what was filled in
+    assert "0 of them now" in output and "7.5" in table.read_text()
+    output = run(f"{WORDS} --received times.csv --adjustments out/anonymous/points.csv")
+    assert "3 of 3 graded, 0 of them now" in output
     with open(graded / "out" / "gradebook.csv", encoding="utf-8-sig", newline="") as file:
         gradebook = {row["student"]: row for row in csv.DictReader(file)}
     by_hand = {student: float(row["by hand"]) for student, row in gradebook.items()}

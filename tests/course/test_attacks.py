@@ -18,7 +18,7 @@ from hdrlab.course.sandbox.inside import system
 
 pytestmark = pytest.mark.grading
 
-ENDS = {  # what is said of the first check
+ENDS = {  # the outcome of the first check
     "a01_everything_equals_it": "not an array: it contains an object of the class Agreeable",
     "a01_agreeable_array": "expected .*, got 7",
     "a02_nan": "expected finite numbers, got 16 NaN",
@@ -74,12 +74,12 @@ CASES = [("strict", name) for name in attack_fixtures.ATTACK_NAMES] + [
 
 @pytest.fixture(scope="module")
 def honest():
-    """Others' submissions by tier, whose processes wait beside those of the attacks."""
+    """Correct submissions by tier, whose processes wait next to those of the attacks."""
     with ExitStack() as stack:
         waiting = {}
 
         def another(tier):
-            """Return a tier's, tried out; where it cannot be had, the reason is the machine's."""
+            """Start a sandbox of a tier; skip the test if this machine cannot run the tier."""
             if tier not in waiting:
                 try:
                     subject = Subject({"double": attack_fixtures.HONEST_CODE}, tiers.choose(tier))
@@ -94,14 +94,18 @@ def honest():
 
 @pytest.fixture(scope="module")
 def port():
-    """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
+    """The port of a server that knows the answer.
+
+    Meanwhile, orphaned processes become children of this one.
+    """
     with attack_fixtures.serve_answer() as number, attack_fixtures.adopt_orphans():
         yield number
 
 
 def points(subject, student="a"):
-    """Return how many of two checks hold, on inputs of the student's own, and what was said of the others."""
-    held, said = 0, []
+    """Return how many of two checks pass, on the student's own inputs, and the errors of the others."""
+    held = 0
+    outcomes = []
     for check in ("first", "second"):
         subject.fresh()
         x = np.random.default_rng(plan.seed("a secret", student, check)).random((4, 4))
@@ -110,8 +114,8 @@ def points(subject, student="a"):
             same(came, 2 * x, 1e-9)
             held += 1
         except (NoAnswer, AnswerMismatch) as error:
-            said.append(str(error))
-    return held, said
+            outcomes.append(str(error))
+    return held, outcomes
 
 
 def test_every_listed_attack_has_a_test():
@@ -123,16 +127,20 @@ def test_every_listed_attack_has_a_test():
 def test_an_attack_earns_no_points_and_leaves_no_files_or_processes(
     tier, name, honest, tmp_path, port
 ):
-    place, other = attack_fixtures.fill_folder(tmp_path), honest(tier)
-    files, processes = attack_fixtures.list_file_sizes(place), system.list_children()
+    place = attack_fixtures.fill_folder(tmp_path)
+    other = honest(tier)
+    files = attack_fixtures.list_file_sizes(place)
+    processes = system.list_children()
     timeout = 0.5 if name.startswith(SLOW) else 20.0
     source = {"double": attack_fixtures.prepare_attack(name, place, port)}
     with Subject(source, tiers.choose(tier), timeout) as subject:
-        held, said = points(subject)
+        held, outcomes = points(subject)
         assert points(other, "another") == (2, []), "another's submission was harmed"
     assert held == 0
-    assert re.search(ENDS[name], said[0]), said
+    assert re.search(ENDS[name], outcomes[0]), outcomes
     assert system.list_children() == processes, "a process is left"
     assert attack_fixtures.list_file_sizes(place) == files, "a file is left"
-    assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", "".join(said) + subject.printed)
+    assert not re.search(
+        r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", "".join(outcomes) + subject.printed
+    )
     assert len(subject.printed) <= 1 << 16

@@ -38,24 +38,28 @@ def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
     sources["zoe"] = HONEST
     for student, source in sources.items():
         (place / f"{student}.py").write_text(source)
-    files, told = attack_fixtures.list_file_sizes(place), {}
+    files = attack_fixtures.list_file_sizes(place)
+    messages = {}
     for student in sources:
         conditions = plan.GradingOptions("strict", student, "a secret", timeout=3.0, draw=False)
         try:
-            told[student] = grader.grade(place / f"{student}.py", homework, conditions)
+            messages[student] = grader.grade(place / f"{student}.py", homework, conditions)
         except tiers.Unavailable as reason:
             pytest.skip(str(reason))
     assert attack_fixtures.list_file_sizes(place) == files
-    assert {student for student, result in told.items() if result.score == result.max_score} == {
+    assert {
+        student for student, result in messages.items() if result.score == result.max_score
+    } == {
         "anna",
         "zoe",
     }
-    assert {told[name].score for name in AIMED} == {0.0}
-    for result in told.values():
+    assert {messages[name].score for name in AIMED} == {0.0}
+    for result in messages.values():
         read = results.from_json(results.to_json(result))
-        assert (
-            read.score == result.score and json.loads(results.to_json(result))["tier"] == "strict"
-        )
+        assert read.score == result.score
+        assert json.loads(results.to_json(result))["tier"] == "strict"
         page = feedback.page(result, private=True)
         assert "<script>alert" not in page and "<svg onload" not in page and "\x1b" not in page
-    assert "alert(1)" in feedback.page(told["a20_scripts"], private=True)  # it is told, as text
+    assert "alert(1)" in feedback.page(
+        messages["a20_scripts"], private=True
+    )  # the name is shown as text

@@ -33,13 +33,16 @@ NOT_NAIVE = {
 
 @pytest.fixture(scope="module")
 def port():
-    """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
+    """The port of a server that knows the answer.
+
+    Meanwhile, orphaned processes become children of this one.
+    """
     with attack_fixtures.serve_answer() as number, attack_fixtures.adopt_orphans():
         yield number
 
 
 def graded(place, patience):
-    """Return what the naive grader says of a submission, its exit code, and whether it came to an end."""
+    """Return the output of the naive grader, its exit code, and whether it finished."""
     process = subprocess.Popen(
         [
             sys.executable,
@@ -60,10 +63,10 @@ def graded(place, patience):
         return process.communicate()[0], process.returncode, False
 
 
-def score(place, said, code):
-    """Return the points that whoever ran the naive grader reads off."""
-    points = len(re.findall("^PASS$", said, re.MULTILINE))
-    points += 2 * (code == 0 and "FAIL" not in said)
+def score(place, output, code):
+    """Return the points that an instructor would read in the output of the naive grader."""
+    points = len(re.findall("^PASS$", output, re.MULTILINE))
+    points += 2 * (code == 0 and "FAIL" not in output)
     if (place / "results.json").exists():
         points += json.loads((place / "results.json").read_text())["score"]
     return points
@@ -79,8 +82,8 @@ def end(processes):
 def test_the_naive_grader_grades_honest_submissions_correctly(tmp_path):
     for answer, points in (("2 * x", 4), ("3 * x", 0), ("None", 0)):
         (tmp_path / "submission.py").write_text(f"def double(x): return {answer}")
-        said, code, ended = graded(tmp_path, 60)
-        assert ended and score(tmp_path, said, code) == points
+        output, code, ended = graded(tmp_path, 60)
+        assert ended and score(tmp_path, output, code) == points
 
 
 @pytest.mark.parametrize(
@@ -89,10 +92,11 @@ def test_the_naive_grader_grades_honest_submissions_correctly(tmp_path):
 def test_the_attack_succeeds_against_a_naive_grader(name, tmp_path, port):
     place = attack_fixtures.fill_folder(tmp_path)
     (place / "submission.py").write_text(attack_fixtures.prepare_attack(name, place, port))
-    files, processes = attack_fixtures.list_file_sizes(place), system.list_children()
-    said, code, ended = graded(place, 2 if name in ENDLESS else 60)
+    files = attack_fixtures.list_file_sizes(place)
+    processes = system.list_children()
+    output, code, ended = graded(place, 2 if name in ENDLESS else 60)
     left = [pid for pid in system.list_children() if pid not in processes]
     end(left)
     assert ended == (name not in ENDLESS)
     if ended:
-        assert score(place, said, code) or left or attack_fixtures.list_file_sizes(place) != files
+        assert score(place, output, code) or left or attack_fixtures.list_file_sizes(place) != files

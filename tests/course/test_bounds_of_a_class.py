@@ -48,7 +48,7 @@ def test_only_and_since_select_the_submissions_to_grade(only, hours, teams, monk
 
 @pytest.fixture
 def done(tmp_path):
-    """A job whose result is there."""
+    """A job with a result."""
     job = GradingJob("t", "file", "key")
     jobs.make_private(tmp_path / "results")
     jobs.write_private_file(
@@ -69,14 +69,13 @@ def test_feedback_is_rewritten_if_a_file_is_missing_or_belongs_to_another_result
     (folder / "result.json").write_bytes(b"other")
     (folder / "feedback.html").write_bytes(b"other")
     run.write_feedback(tmp_path, done)
-    assert (folder / "result.json").read_bytes() == shown and (
-        folder / "feedback.html"
-    ).stat().st_size > 5
+    assert (folder / "result.json").read_bytes() == shown
+    assert (folder / "feedback.html").stat().st_size > 5
     (folder / "feedback.html").write_bytes(b"kept")
     run.write_feedback(tmp_path, done)
     assert (folder / "feedback.html").read_bytes() == b"kept"
-    for one in (folder, folder.parent):
-        assert one.stat().st_mode & 0o777 == 0o700
+    for place in (folder, folder.parent):
+        assert place.stat().st_mode & 0o777 == 0o700
     assert list(run.read_results(tmp_path, [done.job, GradingJob("x", "file", "key")])) == [
         make_result("t")
     ]
@@ -84,10 +83,9 @@ def test_feedback_is_rewritten_if_a_file_is_missing_or_belongs_to_another_result
 
 def test_a_failure_to_write_feedback_is_reported_as_a_problem_of_that_submission(done, tmp_path):
     done.path.write_bytes(b"damaged")
-    found = run.write_feedback(tmp_path, done)
-    assert (
-        found.problem.startswith("its feedback could not be written: ") and found.path == done.path
-    )
+    warnings = run.write_feedback(tmp_path, done)
+    assert warnings.problem.startswith("its feedback could not be written: ")
+    assert warnings.path == done.path
     missing = replace(done, path=None)
     assert run.write_feedback(tmp_path, missing) is missing
     assert list(run.read_results(tmp_path, [done.job])) == []
@@ -115,10 +113,8 @@ def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     _, rows = moodle.gradebook([first], ROSTER, HOMEWORK)
     assert rows == [["b1", "b1", "a@x", 6.0]]
     header, table = marks.what_if_table(course, {"t": 8.0})
-    assert (
-        header[:6] == ["student", "name", "team", "homework", "work", "late 0"]
-        and len(header) == 20
-    )
+    assert header[:6] == ["student", "name", "team", "homework", "work", "late 0"]
+    assert len(header) == 20
     assert table[0][4:9] == [8.0, 8.0, 8.0, 6.0, 4.0] and table[2][4:8] == [10.0, 10.0, 8.0, 6.0]
 
 
@@ -130,16 +126,18 @@ def test_the_next_homework_reads_late_days_from_the_gradebook(tmp_path):
 
 
 def test_class_statistics_count_outcomes_and_give_the_reason_of_ungradable_submissions():
-    each = [
+    results = [
         make_result("a", "", "raised", misconceptions={"hat": "S"}),
         make_result("b", "missing", "missing", problems=("no file", "more")),
         make_result("c", "missing", "", problems=("a problem",)),
     ]
-    found = overview.collect_statistics(each)
-    assert found.points == {"a": 1, "b": 0, "c": 1} and found.refused == {"b": "no file"}
-    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.misconceptions == {
-        ("hat", "S"): 1
+    statistics = overview.collect_statistics(results)
+    assert statistics.points == {"a": 1, "b": 0, "c": 1} and statistics.refused == {"b": "no file"}
+    assert statistics.outcomes["a", "P0"] == {
+        "holds": 1,
+        "no answer": 2,
     }
+    assert statistics.misconceptions == {("hat", "S"): 1}
     bins = overview.histogram([0, 0.01, 9.99, 10, 12], 10)
     assert bins[0] == (0, 2)
     assert bins[-1][1] == 3 and sum(count for _, count in bins) == 5
@@ -169,12 +167,10 @@ def test_files_and_folders_at_the_size_limit_are_accepted(tmp_path, monkeypatch)
         (tmp_path / name).touch()
         with (tmp_path / name).open("r+b") as file:
             file.truncate(size)
-    found = class_folder.find(tmp_path, ROSTER)
-    assert set(found.submissions) == {"t"} and found.refused == {
-        "b3": "b3/a.py: expected at most 1 MB, got 1"
-    }
+    scan = class_folder.find(tmp_path, ROSTER)
+    assert set(scan.submissions) == {"t"}
+    assert scan.refused == {"b3": "b3/a.py: expected at most 1 MB, got 1"}
     (tmp_path / "b1" / "c.py").touch()
-    found = class_folder.find(tmp_path, ROSTER)
-    assert (
-        found.submissions == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"
-    )
+    scan = class_folder.find(tmp_path, ROSTER)
+    assert scan.submissions == {}
+    assert scan.refused["t"] == "b1: expected at most 2 files in a folder"

@@ -36,14 +36,14 @@ ARRAYS = st.sampled_from(channel.DTYPES).flatmap(
 
 @pytest.fixture
 def pair():
-    """Two ends of a channel."""
+    """The two ends of a channel."""
     ours, theirs = socket.socketpair()
     with ours, theirs:
         yield ours, theirs
 
 
 def passed(value):
-    """Return what comes out of a channel for a value."""
+    """Send a value through a channel and return what arrives."""
     ours, theirs = socket.socketpair()
     with ours, theirs:
         channel.send(ours, "word", value, 7)
@@ -142,7 +142,7 @@ def frame(value=None, arrays=(), body=b"", **changed):
 
 
 def label(name="0", dtype="float64", shape=(2,), nbytes=16):
-    """Return what a header says of an array."""
+    """Return the header of an array in a message."""
     return {"name": name, "dtype": dtype, "shape": list(shape), "bytes": nbytes}
 
 

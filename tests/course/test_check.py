@@ -26,8 +26,9 @@ def test_check_shows_a_progress_bar_that_disappears_at_the_end(monkeypatch):
     monkeypatch.setattr(notebook, "_planned", {})
     monkeypatch.setattr(notebook, "_latest", {})
     notebook.use_plan("hw2", hat=20)
-    found = notebook.check("hat")
-    assert found.points == found.homework.points == 20 and "20 of 20 points" in found._repr_html_()
+    report = notebook.check("hat")
+    assert report.points == report.homework.points == 20
+    assert "20 of 20 points" in report._repr_html_()
     first, *growing, last = shown
     assert "hat, checking" in first and last == ""
     assert [re.search(r": (\d) of 4 checks", html)[1] for html in growing] == list("12344")

@@ -44,9 +44,8 @@ def test_a_class_of_300_contains_every_mistake_attack_and_trap(everybody):
     assert which["mistake"] == {
         member.name for member in misconceptions.known() if member.task in HW2
     }
-    assert which["attack"] == set(attack_fixtures.ATTACK_NAMES) and which["trap"] == set(
-        MALICIOUS_ARCHIVES
-    )
+    assert which["attack"] == set(attack_fixtures.ATTACK_NAMES)
+    assert which["trap"] == set(MALICIOUS_ARCHIVES)
     assert len(which["equivalent"]) == 3 and {"empty", "cut short"} < which["blank"]
 
 
@@ -100,11 +99,9 @@ def test_wrong_scores_and_missed_mistakes_are_counted():
         graded = {result.student: result for _, result in members}
         assert tuple(measure(graded, members_alone) for measure in measures) == expected
         assert judged.lost(graded, members_alone) == 0
-    assert (
-        judged.lost({}, members_alone) == 4
-        and judged.not_whole({}, members_alone) == 1
-        and judged.not_refused({}, members_alone) == 1
-    )
+    assert judged.lost({}, members_alone) == 4
+    assert judged.not_whole({}, members_alone) == 1
+    assert judged.not_refused({}, members_alone) == 1
 
 
 def test_two_runs_that_differ_in_one_byte_or_cell_are_distinguished(tmp_path):
@@ -162,9 +159,8 @@ def test_the_benchmark_of_a_class_is_called_class():
 
 def test_a_mixed_class_has_every_hostile_kind_and_sixty_honest_students(tmp_path):
     honest_members = mixed.honest(60, tmp_path)
-    assert len(honest_members) == 60 == len({member.team for member in honest_members}) and not any(
-        member.hostile for member in honest_members
-    )
+    assert len(honest_members) == 60 == len({member.team for member in honest_members})
+    assert not any(member.hostile for member in honest_members)
     others = mixed.hostile(tmp_path, honest_members[0])
     which = {
         kind: {member.which for member in others if member.kind == kind}
@@ -199,9 +195,8 @@ def test_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
     monkeypatch.setattr(class_, "along", lambda work, items, _: [used] * len(items))
     class_.whole(tmp_path, 12)
     rows = class_.among_hostile(tmp_path, 3)
-    assert (
-        len(set(written)) == len(written) == 4 and rows["hostile ones of whom nothing is said"] == 0
-    )
+    assert len(set(written)) == len(written) == 4
+    assert rows["hostile ones of whom nothing is said"] == 0
     assert class_.most_costly(tmp_path)["CPU seconds of the worst"] == 1
 
 

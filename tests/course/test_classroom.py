@@ -82,12 +82,14 @@ def test_late_days_are_read_back_from_a_gradebook(tmp_path):
 def test_an_id_with_an_apostrophe_keeps_its_own_late_days(tmp_path):
     students = tuple(Student(id, id, id) for id in ("b1", "'b1", "=b1", "'=b1"))
     course = replace(COURSE, roster=Roster(students))
-    came = {one.id: handin(one.id, (one.id,), days) for days, one in enumerate(students)}
+    came = {
+        student.id: handin(student.id, (student.id,), days) for days, student in enumerate(students)
+    }
     rows = marks.gradebook_rows(course, came, {})
     rows = [replace(row, note="") for row in rows]
     csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, [row.cells for row in rows])
     read = marks.read([tmp_path / "gradebook.csv"])
-    assert [(one.students, one.late) for one in read] == [
+    assert [(student.students, student.late) for student in read] == [
         (("b1",), 0),
         (("'b1",), 1),
         (("=b1",), 2),
@@ -98,9 +100,8 @@ def test_an_id_with_an_apostrophe_keeps_its_own_late_days(tmp_path):
 def test_the_canvas_table_has_points_possible_and_no_formulas():
     rows = marks.gradebook_rows(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
     lines = list(csv.reader(csv_tables.csv_text(*marks.canvas_table(rows, HOMEWORK)).splitlines()))
-    assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][
-        5
-    ].startswith("hw2")
+    assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"]
+    assert lines[0][5].startswith("hw2")
     assert lines[1][0] == "Points Possible" and float(lines[1][5]) == 100
     assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
 
@@ -109,7 +110,8 @@ def test_the_what_if_table_shows_the_score_for_each_number_of_late_days():
     before = [
         LateRecord("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))
     ]
-    course, points = replace(COURSE, before=before), {"t": 80.0}
+    course = replace(COURSE, before=before)
+    points = {"t": 80.0}
     header, rows = marks.what_if_table(course, points)
     table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
     assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
@@ -125,32 +127,33 @@ def test_the_what_if_table_shows_the_score_for_each_number_of_late_days():
 
 def test_the_class_page_counts_checks_and_misconceptions_and_escapes_them():
     script = "<script>alert(1)</script>"
-    each = [
+    class_results = [
         result("t", (1, 0), {"hat": script}),
         result("b3", (1, 1), {"hat": script}),
         result("x", (0, 0)),
     ]
-    text = overview.class_page(HOMEWORK, overview.collect_statistics(each), [f"{script} came late"])
+    text = overview.class_page(
+        HOMEWORK, overview.collect_statistics(class_results), [f"{script} came late"]
+    )
     assert "script" not in {tag for tag, _ in tags(text)} and text.count("&lt;script&gt;") == 2
     assert "<b>2</b> in <b>hat</b>" in text and "2 of 3" in text and "1 of 3" in text
-    assert (
-        text.count('<td class="right">1</td>') == 1 and text.count('<td class="right">2</td>') == 1
-    )  # fail
+    assert text.count('<td class="right">1</td>') == 1
+    assert text.count('<td class="right">2</td>') == 1  # fail
 
 
 def tags(text):
-    found = []
+    tags_found = []
     reader = HTMLParser()
-    reader.handle_starttag = lambda tag, attrs: found.append((tag, attrs))
+    reader.handle_starttag = lambda tag, attrs: tags_found.append((tag, attrs))
     reader.feed(text)
-    return found
+    return tags_found
 
 
 def test_the_key_of_a_result_depends_on_everything_that_affects_it(tmp_path):
     def keys(conditions, digest="digest"):
-        one = replace(handin("t", ("b1",), 0), digest=digest)
+        job = replace(handin("t", ("b1",), 0), digest=digest)
         homework = HOMEWORK._replace(tasks=HOMEWORK.tasks[:1])
-        return classroom.make_jobs({"t": one}, homework, conditions)[0].key
+        return classroom.make_jobs({"t": job}, homework, conditions)[0].key
 
     (tmp_path / "test_hat.py").write_text("def test_hidden(subject): pass\n")
     different = [
@@ -164,7 +167,7 @@ def test_the_key_of_a_result_depends_on_everything_that_affects_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("members", "said"),
+    ("members", "message"),
     [
         ({"../hw2.py": b""}, "refused"),
         ({"a.py": b"", "b.py": b""}, "one notebook"),
@@ -172,20 +175,22 @@ def test_the_key_of_a_result_depends_on_everything_that_affects_it(tmp_path):
         ({"hw2.py": b"x", "helpers.py": b""}, ""),
     ],
 )
-def test_an_archive_is_opened_or_refused_with_a_one_line_reason(members, said, tmp_path):
+def test_an_archive_is_opened_or_refused_with_a_one_line_reason(members, message, tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         for name, data in members.items():
             archive.writestr(name, data)
     (tmp_path / "scratch").mkdir()
     path, refused = reader.extract_code_file(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
-    assert said in refused and bool(refused) == bool(said) and "\n" not in refused
-    assert said or path.read_bytes() == b"x"
+    assert message in refused and bool(refused) == bool(message) and "\n" not in refused
+    assert message or path.read_bytes() == b"x"
 
 
 def test_a_submission_killed_twice_at_the_same_check_is_graded_a_third_time(monkeypatch):
-    killed, died = (
-        replace(result("b1", ()), checks=(Check("hat", "a", "A", 0, 1, "no answer", kind=kind),))
-        for kind in ("killed", "died")
+    killed = replace(
+        result("b1", ()), checks=(Check("hat", "a", "A", 0, 1, "no answer", kind="killed"),)
+    )
+    died = replace(
+        result("b1", ()), checks=(Check("hat", "a", "A", 0, 1, "no answer", kind="died"),)
     )
     elsewhere = replace(killed, checks=(*killed.checks, *died.checks))
     class_grader = classroom.Grader(HOMEWORK, GradingOptions(tier="practice"))
@@ -205,12 +210,15 @@ def test_a_submission_killed_twice_at_the_same_check_is_graded_a_third_time(monk
 def test_a_submission_is_graded_with_the_hidden_checks_and_with_inputs_of_the_secret(
     secret, monkeypatch
 ):
-    hidden, homes = (("test_hat.py", b"checks"), ("data/hat.csv", b"1,2")), []
+    hidden = (("test_hat.py", b"checks"), ("data/hat.csv", b"1,2"))
+    homes = []
 
     def grade(path, homework, conditions):
         home = conditions.hidden
-        files = [one for one in home.rglob("*") if one.is_file()]
-        assert {one.relative_to(home).as_posix(): one.read_bytes() for one in files} == dict(hidden)
+        files = [file for file in home.rglob("*") if file.is_file()]
+        assert {file.relative_to(home).as_posix(): file.read_bytes() for file in files} == dict(
+            hidden
+        )
         assert conditions.student == ("b1" if secret else "")
         homes.append(home)
         return result(conditions.student, (True,))
@@ -242,7 +250,9 @@ def test_a_grader_can_be_pickled():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Make a class of four, of which a team and a student have handed in, and go there."""
+    """Make a class of four students, of whom a team and a student have submitted, and change to its
+    folder.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in").mkdir()
     (tmp_path / "roster.csv").write_text("student,name,team\nb1,Ada,t\nb2,Bo,t\nb3,Cy,\nb4,Di,\n")
@@ -273,14 +283,14 @@ WORDS = [*WORDS_WITHOUT_TIMES, "--received", "times.csv"]
 
 @pytest.fixture
 def grade(folder, capsys):
-    """Return a function that runs the command with more words, and returns what it said."""
+    """Return a function that runs the command with further words, and returns its output."""
 
     def run(*more, code=None):
         with pytest.raises(SystemExit) as ended:
             cli.run([*WORDS, *more])
-        said = capsys.readouterr()
-        assert ended.value.code == code, said.err
-        return said.err if code else said.out
+        output = capsys.readouterr()
+        assert ended.value.code == code, output.err
+        return output.err if code else output.out
 
     return run
 
@@ -290,10 +300,8 @@ def test_grading_a_class_writes_a_gradebook_and_a_page(folder, grade):
     assert "2 of 2 graded, 2 of them now" in grade()
     whole = {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()}
     rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
-    assert (
-        float(rows["b1"]["work"]) > 0
-        and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
-    )
+    assert float(rows["b1"]["work"]) > 0
+    assert rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
     assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == (
         "3",
         "7",
@@ -304,10 +312,8 @@ def test_grading_a_class_writes_a_gradebook_and_a_page(folder, grade):
     links = [dict(attrs)["href"] for tag, attrs in tags(page) if tag == "a"]
     assert links == ["feedback/t/feedback.html"] * 2 + ["feedback/b3/feedback.html"]
     assert all((folder / "out" / link).is_file() for link in links)
-    assert (
-        "<h2>Not handed in</h2><p>b4 (Di)</p>" in page
-        and "<li>b3 (Cy): 3 days, 3 of them free" in page
-    )
+    assert "<h2>Not handed in</h2><p>b4 (Di)</p>" in page
+    assert "<li>b3 (Cy): 3 days, 3 of them free" in page
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
     names = {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"}
     assert names <= {path.name for path in whole}
@@ -332,18 +338,17 @@ def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade)
     before = result.stat().st_mtime_ns, result.read_bytes()
     assert "2 of 2 graded, 1 of them now" in grade("--regrade", "--only", "t")
     assert result.stat().st_mtime_ns > before[0] and result.read_bytes() == before[1]
-    told = grade(
+    output = grade(
         "--regrade", "--cluster", "tcp://127.0.0.1:1", code=2
     )  # nothing is forgotten for nothing
-    assert (
-        "expected a Dask cluster at tcp://127.0.0.1:1" in told and result.read_bytes() == before[1]
-    )
+    assert "expected a Dask cluster at tcp://127.0.0.1:1" in output
+    assert result.read_bytes() == before[1]
     rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
     assert not rows["b1"]["note"] and "The archive is refused" in rows["b3"]["note"]
     handed = marks.read(
         [folder / "out" / "gradebook.csv"]
     )  # what is refused has come, and took its days
-    assert [(one.students, one.late) for one in handed] == [
+    assert [(record.students, record.late) for record in handed] == [
         (("b1",), 0),
         (("b2",), 0),
         (("b3",), 3),
@@ -368,8 +373,8 @@ def test_after_the_due_date_feedback_explains_hidden_checks_without_a_new_gradin
     page = folder / "out" / "feedback" / "t" / "feedback.html"
     passed = PLAN.replace("2026-10-23", "2020-10-23")
     (folder / "plan.toml").write_text(passed.replace("2020", "2999"))
-    said = grade("--hidden", "checks", "--explain-hidden", code=2)
-    assert "due on 2999-10-23" in said and not page.exists()
+    output = grade("--hidden", "checks", "--explain-hidden", code=2)
+    assert "due on 2999-10-23" in output and not page.exists()
     (folder / "plan.toml").write_text(passed)
     grade("--hidden", "checks")
     assert "the first weight is not 42" not in page.read_text()
@@ -390,7 +395,7 @@ def test_a_plan_without_dates_makes_nobody_late_and_is_reported(folder, capsys):
 
 @pytest.mark.grading
 @pytest.mark.parametrize(
-    ("words", "late", "said"),
+    ("words", "late", "message"),
     [
         (["--received", "times.csv"], "3", "by times.csv, 1 of 4 students are late: b3 3 days"),
         (["--file-times"], "3", "by the files' modification times, 1 of 4"),
@@ -398,7 +403,7 @@ def test_a_plan_without_dates_makes_nobody_late_and_is_reported(folder, capsys):
     ],
 )
 def test_the_command_reports_late_submissions_and_the_times_it_uses_before_grading(
-    words, late, said, folder, capsys
+    words, late, message, folder, capsys
 ):
     on_time = datetime.fromisoformat("2026-10-23T12:00+00:00").timestamp()
     days_later = datetime.fromisoformat("2026-10-26T12:00+00:00").timestamp()
@@ -406,22 +411,22 @@ def test_the_command_reports_late_submissions_and_the_times_it_uses_before_gradi
     os.utime(folder / "in" / "b3.zip", (days_later, days_later))
     with pytest.raises(SystemExit):
         cli.run([*WORDS_WITHOUT_TIMES, *words])
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
     assert rows["b1"]["late"] == "0" and rows["b3"]["late"] == late
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "message"),
     [
         (["--only", "b4"], "b4"),
         (["--only", "b9"], "'b9'"),
         (["--cluster", "tcp://127.0.0.1:1", "--jobs", "2"], "--jobs and --cluster"),
     ],
 )
-def test_an_ungradable_class_is_reported_in_one_line(more, said, grade):
-    told = grade(*more, code=2)
-    assert said in told and told.count("\n") == 1
+def test_an_ungradable_class_is_reported_in_one_line(more, message, grade):
+    output = grade(*more, code=2)
+    assert message in output and output.count("\n") == 1
 
 
 def test_hidden_checks_are_sent_without_compiled_files(tmp_path):

@@ -9,7 +9,7 @@ F = "def f():\n    return x"
 
 
 def source(*cells, task="f"):
-    """Return the statements of a task's text; the last cell is the task's own."""
+    """Return the statements of a task's text; the last cell belongs to the task itself."""
     made = [Cell(text) for text in cells[:-1]] + [Cell(cells[-1], task)]
     texts, problems = extract_sources(made, [task])
     assert not problems
@@ -148,18 +148,18 @@ def test_notebook_magics_are_removed_from_a_cell(text, expected):
 
 
 def test_given_cells_replace_their_copies_in_the_assignment_and_do_not_count_as_answers():
-    given = [Cell("x = 'ours'", given=True), Cell("def f():\n    return 'ours'", "f", True)]
+    given_cells = [Cell("x = 'ours'", given=True), Cell("def f():\n    return 'ours'", "f", True)]
     cells = [Cell("x = 'theirs'", given=True), Cell(F, "f")]
-    assert extract_sources(cells, ["f"], given)[0]["f"] == f"x = 'ours'\n\n{F}\n"
+    assert extract_sources(cells, ["f"], given_cells)[0]["f"] == f"x = 'ours'\n\n{F}\n"
     assert extract_sources(cells, ["f"])[0]["f"] == f"x = 'theirs'\n\n{F}\n"
-    assert extract_sources(cells[:1], ["f"], given) == (
+    assert extract_sources(cells[:1], ["f"], given_cells) == (
         {},
         ["f was not found: no cell defines a function of this name"],
     )
 
 
 @pytest.mark.parametrize(
-    ("cell", "said"),
+    ("cell", "message"),
     [
         (Cell("x = = 1", "", False, "cell 3"), "cell 3 is no Python, line 1: "),
         (
@@ -170,6 +170,6 @@ def test_given_cells_replace_their_copies_in_the_assignment_and_do_not_count_as_
         (Cell("x = '\0'", "", False, "cell 6"), "cell 6 is no Python"),
     ],
 )
-def test_a_cell_with_a_syntax_error_is_reported_with_its_line(cell, said):
+def test_a_cell_with_a_syntax_error_is_reported_with_its_line(cell, message):
     texts, problems = extract_sources([cell, Cell("def f(): 1")], ["f"])
-    assert texts == {"f": "def f(): 1\n"} and len(problems) == 1 and problems[0].startswith(said)
+    assert texts == {"f": "def f(): 1\n"} and len(problems) == 1 and problems[0].startswith(message)

@@ -37,7 +37,7 @@ test_cluster.graded({address!r}, Path({folder!r}), cluster_jobs.grade_slowly)
 
 @contextmanager
 def clustered(workers, threads, at_once=0):
-    """Start a scheduler, and so many workers: at once, or a little later."""
+    """Start a scheduler and so many workers, at once or a little later."""
     knobs = {"threads_per_worker": threads, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
     ended = threading.Event()
     with (
@@ -56,26 +56,27 @@ def clustered(workers, threads, at_once=0):
             keeper.join()
 
 
-def _keep(running, workers, asked, ended):
-    """Ask for workers that are missing, too: a nanny gives up on one that was killed while it began."""
-    met = time.monotonic() - 100 * (asked == 0)
+def _keep(running, workers, requested, ended):
+    """Start missing workers again: a nanny does not restart a worker that was killed while it started."""
+    met = time.monotonic() - 100 * (requested == 0)
     while not ended.wait(0.5):
         if len(running.scheduler.workers) >= workers:
             met = time.monotonic()
         elif time.monotonic() > met + 10:
-            asked, met = max(asked + 1, workers), time.monotonic()
-            running.scale(asked)
+            requested = max(requested + 1, workers)
+            met = time.monotonic()
+            running.scale(requested)
 
 
 @pytest.fixture(scope="module")
 def address():
-    """Start a scheduler and two workers, and return where they are."""
+    """Start a scheduler and two workers, and return the address of the scheduler."""
     with clustered(2, 1, at_once=2) as running:
         yield running.scheduler_address
 
 
 def graded(address, home, work=cluster_jobs.grade_quickly, **knobs):
-    """Grade the class of a folder, and return what was done and what the results are."""
+    """Grade the class in a folder, and return the job results and the result files."""
     folder = home / "results"
     with jobs.lock_folder(folder):
         done, rest = jobs.split_finished(folder, cluster_jobs.make_jobs(home / "class"))
@@ -85,7 +86,7 @@ def graded(address, home, work=cluster_jobs.grade_quickly, **knobs):
 
 
 def contents(folder):
-    """Return the bytes of every file of a folder but its lock, which holds no result."""
+    """Return the bytes of all files of a folder, except for its lock."""
     return {
         path.name: path.read_bytes()
         for path in sorted(folder.iterdir())
@@ -94,7 +95,7 @@ def contents(folder):
 
 
 def whole(home):
-    """Return the results of the same class, done here."""
+    """Return the results of the same class, graded in this process."""
     with processes.Processes(cluster_jobs.grade_quickly, 2) as executor:
         list(jobs.run_jobs(cluster_jobs.make_jobs(home / "class"), executor, home / "here"))
     return contents(home / "here")
@@ -102,16 +103,21 @@ def whole(home):
 
 def test_a_cluster_gives_the_same_results_as_the_local_machine(address, tmp_path):
     done, results = graded(address, tmp_path)
-    assert results == whole(tmp_path) and len(results) == 5 and all(one.is_new for one in done)
+    assert results == whole(tmp_path)
+    assert len(results) == 5
+    assert all(result.is_new for result in done)
     again, same = graded(address, tmp_path)
-    assert same == results and not any(one.is_new for one in again)
+    assert same == results and not any(result.is_new for result in again)
 
 
 def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
     def kill():
-        while not (noted := cluster_jobs.read_started_jobs(tmp_path / "class")):
+        started = cluster_jobs.read_started_jobs(tmp_path / "class")
+        while not started:
             time.sleep(0.05)
-        os.kill(noted[0][2], signal.SIGKILL)
+            started = cluster_jobs.read_started_jobs(tmp_path / "class")
+        _, _, worker = started[0]
+        os.kill(worker, signal.SIGKILL)
 
     killer = threading.Thread(target=kill)
     killer.start()
@@ -120,7 +126,7 @@ def test_the_job_of_a_killed_worker_is_done_by_another(address, tmp_path):
     noted = cluster_jobs.read_started_jobs(tmp_path / "class")
     first = [worker for owner, _, worker in noted if owner == noted[0][0]]
     assert len(noted) == 6 and len(set(first)) == 2
-    assert results == whole(tmp_path) and all(one.path for one in done)
+    assert results == whole(tmp_path) and all(result.path for result in done)
 
 
 def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_graded(
@@ -128,7 +134,7 @@ def test_a_submission_that_kills_its_worker_is_reported_and_all_others_are_grade
 ):
     done, results = graded(address, tmp_path, cluster_jobs.kill_worker)
     owners = [owner for owner, *_ in cluster_jobs.read_started_jobs(tmp_path / "class")]
-    (lost,) = [one for one in done if one.path is None]
+    (lost,) = [result for result in done if result.path is None]
     assert lost.job.owner == "s3" and "3 times" in lost.problem and "was lost" in lost.problem
     assert owners.count("s3") == 3 and len(owners) == 7
     assert results == {
@@ -142,7 +148,7 @@ def test_jobs_that_share_a_worker_with_a_fatal_one_are_still_graded(tmp_path):
         done, results = graded(
             running.scheduler_address, tmp_path, cluster_jobs.kill_worker_beside_others
         )
-    (lost,) = [one for one in done if one.path is None]
+    (lost,) = [result for result in done if result.path is None]
     assert lost.job.owner == "s3" and len(results) == 4
     assert [owner for owner, *_ in cluster_jobs.read_started_jobs(tmp_path / "class")].count(
         "s3"
@@ -154,7 +160,7 @@ def test_no_worker_runs_more_jobs_than_it_has_threads(tmp_path):
         2, 1, at_once=2
     ) as running:  # its own: where a worker was killed, there may be one too many
         with cluster.Cluster(running.scheduler_address, cluster_jobs.never_finish) as executor:
-            started = [executor.start(one) for one in cluster_jobs.make_jobs(tmp_path / "class")]
+            started = [executor.start(job) for job in cluster_jobs.make_jobs(tmp_path / "class")]
             assert started == [True, True, False, False, False]
             while len(cluster_jobs.read_started_jobs(tmp_path / "class")) < 2:
                 assert not executor.wait_for_attempts()
@@ -182,20 +188,20 @@ def test_the_next_run_finishes_a_killed_run_whose_jobs_have_ended(address, tmp_p
     run.kill()
     run.wait()
     done, results = graded(address, tmp_path)
-    assert results == whole(tmp_path) and 1 <= sum(not one.is_new for one in done) < 5
+    assert results == whole(tmp_path) and 1 <= sum(not result.is_new for result in done) < 5
     assert not any(map(alive, cluster_jobs.read_started_jobs(tmp_path / "class")))
 
 
 def test_a_submission_that_never_ends_is_stopped(address, tmp_path):
-    (one,) = cluster_jobs.make_jobs(tmp_path / "class", 1)
+    (job,) = cluster_jobs.make_jobs(tmp_path / "class", 1)
     with cluster.Cluster(address, cluster_jobs.never_finish, timeout=0.5) as executor:
-        (done,) = jobs.run_jobs([one], executor, tmp_path / "results")
+        (done,) = jobs.run_jobs([job], executor, tmp_path / "results")
     assert done.path is None and "3 times" in done.problem and "too long" in done.problem
 
 
 @pytest.mark.parametrize("nowhere", ["tcp://127.0.0.1:1", "nowhere", "http://a:1"])
 def test_a_missing_cluster_is_an_error(nowhere, tmp_path, monkeypatch):
-    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)  # it is not asked again and again
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)  # the client does not retry for long
     with pytest.raises(ValueError, match="Dask cluster at"):
         graded(nowhere, tmp_path)
 
@@ -222,9 +228,9 @@ def test_a_different_hdrlab_on_the_cluster_is_an_error_with_both_versions(addres
         client.wait_for_workers(2)
         client.run(rename, "0.0.7")
         try:
-            with pytest.raises(ValueError, match=r"0\.0\.7") as told:
+            with pytest.raises(ValueError, match=r"0\.0\.7") as error:
                 graded(address, tmp_path)
-            assert hdrlab.__version__ in str(told.value)
+            assert hdrlab.__version__ in str(error.value)
         finally:
             client.run(rename, hdrlab.__version__)
     job = cluster_jobs.make_jobs(tmp_path / "class", 1)[0]
@@ -251,4 +257,4 @@ def test_a_worker_lost_during_the_check_does_not_end_the_run(tmp_path):
         ready = partial(die_once, tmp_path / "died")
         done, results = graded(running.scheduler_address, tmp_path, check_available=ready)
     assert (tmp_path / "died").exists()
-    assert results == whole(tmp_path) and not any(one.problem for one in done)
+    assert results == whole(tmp_path) and not any(result.problem for result in done)

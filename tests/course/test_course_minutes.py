@@ -53,8 +53,8 @@ def test_a_notebook_begins_with_its_minutes_its_prerequisites_and_what_the_reade
         notebook = json.loads(
             (course_minutes.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8")
         )
-        said = "".join(notebook["cells"][0]["source"]).split("\n\n")[1].replace("\n", " ")
-        begin, what = said.split(". Afterwards you can ")
+        sentence = "".join(notebook["cells"][0]["source"]).split("\n\n")[1].replace("\n", " ")
+        begin, what = sentence.split(". Afterwards you can ")
         time, _, after = begin.partition(" minutes")
         assert time == f"*{minutes}" and numbers(after) == numbers(needs), name
         assert len(what) > 20 and what.endswith(".*"), name
@@ -79,11 +79,9 @@ def test_the_course_plan_lists_every_task_with_its_points(page):
 
 
 def test_the_minutes_in_the_course_plan_follow_the_rule_within_ten_minutes(page):
-    said, counted = (
-        list(map(int, re.findall(r"\d+", text)))
-        for text in (page, course_minutes.with_minutes(page))
-    )
-    far = [pair for pair in zip(said, counted, strict=True) if abs(pair[0] - pair[1]) > 10]
+    numbers = list(map(int, re.findall(r"\d+", page)))
+    counted = list(map(int, re.findall(r"\d+", course_minutes.with_minutes(page))))
+    far = [pair for pair in zip(numbers, counted, strict=True) if abs(pair[0] - pair[1]) > 10]
     assert not far, "run python -m tools.course_minutes"
 
 
@@ -95,9 +93,8 @@ def test_the_copy_of_the_course_plan_is_up_to_date(page):
 
 def test_the_links_of_the_copy_lead_to_existing_files():
     links = re.findall(r"\]\(([^)#]+)\)", course_minutes.COPY.read_text(encoding="utf8"))
-    assert len(links) > 23 and not [
-        link for link in links if not (course_minutes.ROOT / link).exists()
-    ]
+    assert len(links) > 23
+    assert not [link for link in links if not (course_minutes.ROOT / link).exists()]
 
 
 def test_the_semester_has_every_notebook_once_after_those_it_builds_on(page):
@@ -106,7 +103,7 @@ def test_the_semester_has_every_notebook_once_after_those_it_builds_on(page):
     needs = prerequisites(page)
     assert sorted(taught) == sorted(needs)
     for number, earlier in needs.items():
-        late = [one for one in earlier if taught.index(one) > taught.index(number)]
+        late = [notebook for notebook in earlier if taught.index(notebook) > taught.index(number)]
         assert not late, f"{number} builds on {late}"
 
 
@@ -131,9 +128,9 @@ def test_the_lab_and_the_project_include_all_prerequisites_of_their_notebooks(pa
     needs = prerequisites(page)
     lab = [number for number, _, _ in rows(course_minutes.LAB_ROW, page)]
     project = [
-        one
+        part
         for row in rows(r"^\| \d \| ([\d, ]+) \| [^|]+ \|$", section(page, "Three weeks"))
-        for one in row.split(", ")
+        for part in row.split(", ")
     ]
     assert lab == ["00", "04", "10", "16"] and project == ["00", "03", "04", "10", "14", "16"]
     for path in (lab, project):
@@ -151,13 +148,13 @@ def test_reading_a_question_and_a_figure_take_a_minute_each(tmp_path):
         "cell_type": "markdown",
         "source": ["## One\n", "word " * (2 * course_minutes.WORDS_PER_MINUTE - 2)],
     }
-    asked = {
+    questions = {
         "cell_type": "markdown",
         "source": ["**Predict.** " + "word " * (course_minutes.WORDS_PER_MINUTE - 1)],
     }
     drawn = {"cell_type": "code", "source": ["pictures.picture(x)"]}
     path = tmp_path / "x.ipynb"
-    path.write_text(json.dumps({"cells": [words, asked, drawn]}), encoding="utf8")
+    path.write_text(json.dumps({"cells": [words, questions, drawn]}), encoding="utf8")
     assert course_minutes.section_minutes(path) == {"": 0, "One": 2 + 2 + 1}
 
 
@@ -175,16 +172,16 @@ def test_the_first_notebook_links_to_the_others_by_their_titles():
 
 
 def test_no_page_points_to_a_slide_that_its_reader_does_not_have():
-    """A sentence of a lesson stands alone: it names the paper instead of a slide or an overview."""
+    """A sentence of a lesson must be clear by itself: it names the paper, not a slide or an overview."""
     pointed = re.compile(
         r"\b(?:the|on the|a) slides?(?:'s|')?\b(?! the edge)|\bthe overview\b|[Ll]ecture 21", re.I
     )
-    found = []
+    pointers = []
     for path in sorted((course_minutes.ROOT / "notebooks").glob("*.ipynb")):
         for cell in json.loads(path.read_text(encoding="utf8"))["cells"]:
             if cell["cell_type"] == "markdown":
-                found += [
-                    f"{path.stem}: {one[0]}"
-                    for one in pointed.finditer(" ".join("".join(cell["source"]).split()))
+                pointers += [
+                    f"{path.stem}: {match[0]}"
+                    for match in pointed.finditer(" ".join("".join(cell["source"]).split()))
                 ]
-    assert not found
+    assert not pointers

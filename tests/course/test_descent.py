@@ -15,55 +15,57 @@ import pytest
 
 from hdrlab.course.sandbox import descent
 
-CREATE, ADD, RESTRICT = (
-    444,
-    445,
-    446,
-)  # landlock_create_ruleset, landlock_add_rule, landlock_restrict_self
+# landlock_create_ruleset, landlock_add_rule, landlock_restrict_self
+CREATE = 444
+ADD = 445
+RESTRICT = 446
 RULES = 1000  # a descriptor that there is not
 
 
 class Kernel:
-    """A C library and a module os that write down what is asked of them; `version` is Landlock's."""
+    """A fake C library and module os that record their calls; `version` is that of Landlock."""
 
     def __init__(self, version=6):
-        self.version, self.asked, self.opened = version, [], {}
+        self.version = version
+        self.asked = []
+        self.opened = {}
 
-    def said(self, *words):
+    def record(self, *words):
         self.asked.append(words)
         return 0
 
     def syscall(self, number, *words):
         if number == CREATE and words[0] is None:
-            return self.said("version", *words) or self.version
-        self.said(number, *words)
+            return self.record("version", *words) or self.version
+        self.record(number, *words)
         return RULES if number == CREATE else 0
 
     def __getattr__(self, name):
         if name in ("prctl", "mount", "unshare", "setgroups", "setresgid", "setresuid", "execve"):
-            return lambda *words: self.said(
+            return lambda *words: self.record(
                 name, *(word.value if isinstance(word, c_ulong) else word for word in words)
             )
         return getattr(os, name)
 
     def open(self, path, flags):
-        self.said("open", str(path), flags)
-        self.opened[made := os.open(path, flags)] = str(path)
-        return made
+        self.record("open", str(path), flags)
+        descriptor = os.open(path, flags)
+        self.opened[descriptor] = str(path)
+        return descriptor
 
     def close(self, descriptor):
         path = self.opened.pop(descriptor, None)
         if path is not None:
             os.close(descriptor)
-        self.said("close", path or descriptor)
+        self.record("close", path or descriptor)
 
     def set_inheritable(self, descriptor, whether):
-        self.said("inherit", self.opened[descriptor], whether)
+        self.record("inherit", self.opened[descriptor], whether)
 
 
 @pytest.fixture
 def kernel(monkeypatch):
-    """A kernel that writes down what descent.py asks, and at whose end no descriptor is left open."""
+    """A kernel that records the calls of descent.py; at the end, all its descriptors must be closed."""
     made = Kernel()
     monkeypatch.setattr(descent, "_libc", made)
     monkeypatch.setattr(descent, "os", made)
@@ -86,7 +88,7 @@ def test_the_landlock_version_is_zero_without_landlock(answer, version, kernel):
     assert kernel.asked == [("version", None, 0, 1)]
 
 
-# by Landlock's version: rights over files, ports and scopes, as far as it knows them
+# the rights over files, ports and scopes that each version of Landlock supports
 KNOWN = {
     1: [0x1FFF],
     2: [0x3FFF],
@@ -114,24 +116,25 @@ def test_the_landlock_ruleset_handles_every_right_of_its_version(version, kernel
 
 
 def test_landlock_rules_allow_reading_listing_and_writing_only_as_given(kernel, tmp_path):
-    folder, file, listed, written = (
-        tmp_path / name for name in ("folder", "file", "listed", "written")
-    )
+    folder = tmp_path / "folder"
+    file = tmp_path / "file"
+    listed = tmp_path / "listed"
+    written = tmp_path / "written"
     folder.mkdir()
     listed.mkdir()
     file.touch()
     written.touch()
     descent.restrict_files([str(folder), str(file)], [str(listed)], [str(written)])
     rights = {str(folder): 4 + 8 + 1, str(file): 4 + 1, str(listed): 8, str(written): 4 + 2}
-    asked = kernel.asked[2:-3]
-    assert [one[:3] for one in asked if one[0] == "open"] == [
+    calls = kernel.asked[2:-3]
+    assert [call[:3] for call in calls if call[0] == "open"] == [
         ("open", path, os.O_PATH) for path in rights
     ]
-    rules = [one for one in asked if one[0] == ADD]
-    assert [one[1:3] + one[4:] for one in rules] == [(RULES, 1, 0)] * 4
-    assert [struct.unpack("=Qi", one[3])[0] for one in rules] == list(rights.values())
-    assert [one[0] for one in asked] == ["open", ADD, "close"] * 4
-    assert [one[1] for one in asked if one[0] == "close"] == list(rights) and not kernel.opened
+    rules = [call for call in calls if call[0] == ADD]
+    assert [call[1:3] + call[4:] for call in rules] == [(RULES, 1, 0)] * 4
+    assert [struct.unpack("=Qi", call[3])[0] for call in rules] == list(rights.values())
+    assert [call[0] for call in calls] == ["open", ADD, "close"] * 4
+    assert [call[1] for call in calls if call[0] == "close"] == list(rights) and not kernel.opened
 
 
 def test_a_landlock_rule_refers_to_the_opened_path(kernel, monkeypatch, tmp_path):
@@ -142,32 +145,35 @@ def test_a_landlock_rule_refers_to_the_opened_path(kernel, monkeypatch, tmp_path
         lambda path, flags: places.append(Kernel.open(kernel, path, flags)) or places[-1],
     )
     descent.restrict_files([], [str(tmp_path)], [])
-    (rule,) = [one for one in kernel.asked if one[0] == ADD]
+    (rule,) = [call for call in kernel.asked if call[0] == ADD]
     assert struct.unpack("=Qi", rule[3]) == (8, *places)
 
 
 def test_paths_are_bind_mounted_in_a_private_mount_namespace(kernel, monkeypatch, tmp_path):
-    stage, folder, file = tmp_path / "stage", tmp_path / "folder", tmp_path / "file"
-    for one in (stage, folder):
-        one.mkdir()
+    stage = tmp_path / "stage"
+    folder = tmp_path / "folder"
+    file = tmp_path / "file"
+    for path in (stage, folder):
+        path.mkdir()
     file.touch()
     monkeypatch.setattr(descent, "STAGE", str(stage))
     descent.stage([str(folder), str(file)])
-    mounts = [one for one in kernel.asked if one[0] in ("unshare", "mount")]
-    none, where = b"", str(stage).encode()
+    mounts = [path for path in kernel.asked if path[0] in ("unshare", "mount")]
+    none = b""
+    where = str(stage).encode()
     assert mounts[:3] == [
         ("unshare", 0x20000),
         ("mount", b"none", b"/", none, 0x4000 | 0x40000, none),
         ("mount", b"tmpfs", where, b"tmpfs", 0, b"size=64k,mode=755"),
     ]
-    assert [one[2:] for one in mounts[3:]] == [
+    assert [path[2:] for path in mounts[3:]] == [
         (where + b"/%d" % j, none, 0x5000, none) for j in (0, 1)
     ]
-    assert all(one[1].startswith(b"/proc/self/fd/") for one in mounts[3:])
+    assert all(path[1].startswith(b"/proc/self/fd/") for path in mounts[3:])
     assert (stage / "0").is_dir() and (stage / "1").is_file() and not kernel.opened
-    opened = [one[1] for one in kernel.asked if one[0] == "open"]
+    opened = [path[1] for path in kernel.asked if path[0] == "open"]
     assert opened == [str(folder), str(file), f"{stage}/1"]
-    begun = [one[0] for one in kernel.asked]
+    begun = [path[0] for path in kernel.asked]
     assert begun.index("mount") < begun.index("open"), (
         "what is opened before is of the old namespace"
     )
@@ -189,7 +195,7 @@ def order(**more):
 
 def test_without_mounts_and_landlock_the_program_starts_as_the_user(kernel):
     descent.main(order())
-    assert [one[0] for one in kernel.asked] == [
+    assert [call[0] for call in kernel.asked] == [
         "setgroups",
         "setresgid",
         "setresuid",
@@ -200,8 +206,8 @@ def test_without_mounts_and_landlock_the_program_starts_as_the_user(kernel):
 
 
 def test_mounts_and_landlock_come_before_dropping_privileges(kernel, monkeypatch):
-    monkeypatch.setattr(descent, "stage", lambda paths: kernel.said("stage", paths))
-    monkeypatch.setattr(descent, "restrict_files", lambda **order: kernel.said("fence", order))
+    monkeypatch.setattr(descent, "stage", lambda paths: kernel.record("stage", paths))
+    monkeypatch.setattr(descent, "restrict_files", lambda **order: kernel.record("fence", order))
     fence = {"readable": ["r"], "listable": ["w"], "writable": []}
     descent.main(order(stage=["/a"], fence=fence))
     assert kernel.asked[:3] == [("stage", ["/a"]), ("fence", fence), ("setgroups", [])]

@@ -9,7 +9,7 @@ from hdrlab.course.sandbox.session import Unavailable
 
 
 class Trial:
-    """A sandbox that is tried: `ends` are how its starts end, `broken` is what breaks out of it."""
+    """A sandbox to try: `ends` says how its starts end, and `broken` what escapes from it."""
 
     def __init__(self, ends=(), broken=()):
         self.ends = list(ends)
@@ -40,7 +40,7 @@ class Trial:
 
 @pytest.fixture
 def examine(monkeypatch):
-    """examine(tier, trial) -> what the doctor finds of a tier whose sandbox is a Trial."""
+    """examine(tier, trial) -> the doctor's findings about a tier whose sandbox is a Trial."""
 
     def examine(tier, trial):
         monkeypatch.setattr(doctor, "Subject", trial)
@@ -95,10 +95,8 @@ def test_the_remedy_depends_on_the_reason_and_on_system_settings(monkeypatch, tm
         doctor, "Path", lambda *parts: tmp_path.joinpath(*(part.lstrip("/") for part in parts))
     )
     assert doctor.find_remedy("there is no bwrap, no libseccomp") == "install it"
-    assert (
-        doctor.find_remedy("container: no\nlibseccomp") == ""
-        and doctor.find_remedy("strict: no") == ""
-    )
+    assert doctor.find_remedy("container: no\nlibseccomp") == ""
+    assert doctor.find_remedy("strict: no") == ""
     (tmp_path / ".dockerenv").touch()
     nested = "namespaces rarely nest in containers: use the container tier, as root"
     assert doctor.find_remedy("the strict sandbox did not start: libseccomp") == nested

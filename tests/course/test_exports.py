@@ -22,7 +22,7 @@ HERE = Path(__file__).resolve().parents[2]
 def short():
     """A plan with one homework of two tasks."""
     hw2 = plan.read().homeworks["hw2"]
-    return Plan({"hw2": hw2._replace(tasks=tuple(one for one in hw2.tasks if one.id in SHORT))})
+    return Plan({"hw2": hw2._replace(tasks=tuple(task for task in hw2.tasks if task.id in SHORT))})
 
 
 @pytest.fixture(scope="module")
@@ -87,11 +87,9 @@ def test_a_source_notebook_has_points_locks_and_solutions(course):
         if "nbgrader" in cell["metadata"]
     }
     assert set(marks) == {f"{kind}-{task}" for kind in ("task", "check") for task in SHORT}
-    assert (
-        marks["check-hat"]["points"] == 10
-        and marks["check-hat"]["locked"]
-        and marks["check-hat"]["grade"]
-    )
+    assert marks["check-hat"]["points"] == 10
+    assert marks["check-hat"]["locked"]
+    assert marks["check-hat"]["grade"]
     assert marks["task-hat"]["solution"] and not marks["task-hat"]["locked"]
     text = "".join(notebook["task-irradiance"]["source"])
     scope = {}
@@ -106,7 +104,7 @@ def test_tasks_that_the_plan_leaves_out_are_not_in_the_export(course):
 
 @pytest.mark.parametrize("name", plan.read().homeworks)
 def test_every_solution_of_the_course_runs_inside_its_own_function(name):
-    """It is nested, so a helper that were left behind would be missed: each text is compiled and defined."""
+    """Functions are nested, so a missing helper would not be noticed: each text is compiled and run."""
     for task in plan.read().homeworks[name].tasks:
         scope = {}
         exec("import numpy as np\n" + nbgrader.solved(task), scope)
@@ -115,18 +113,18 @@ def test_every_solution_of_the_course_runs_inside_its_own_function(name):
 
 @pytest.mark.grading
 def test_nbgrader_makes_the_students_version_grades_it_and_gives_feedback(course, tool):
-    """One student hands in a right and a wrong function, another the sheet as it was given."""
+    """One student submits a right and a wrong function, another the unchanged assignment."""
     assert "0.9.6" in tool(course, "--version")
     tool(course, "generate_assignment", "hw2", "--create", "--force")
     released = course / "release" / "hw2" / "hw2.ipynb"
-    given = released.read_text()
-    assert "YOUR CODE HERE" in given and "BEGIN SOLUTION" not in given and "def irradiance" in given
+    text = released.read_text()
+    assert "YOUR CODE HERE" in text and "BEGIN SOLUTION" not in text and "def irradiance" in text
     for student in ("ada", "blank"):
         target = course / "submitted" / student / "hw2"
         target.mkdir(parents=True)
         shutil.copy(released, target / "hw2.ipynb")
     handed_in = course / "submitted" / "ada" / "hw2" / "hw2.ipynb"
-    written = json.loads(given)
+    written = json.loads(text)
     for cell in written["cells"]:
         if cell["id"] == "task-hat":
             cell["source"] = (
@@ -163,7 +161,7 @@ def scores_of(database):
 
 @pytest.fixture(scope="module")
 def zipped(tmp_path_factory):
-    """The autograder of a plan with two tasks, unpacked where Gradescope puts it: source/ below the root."""
+    """The autograder of a plan with two tasks, unpacked as on Gradescope into source/ below the root."""
     folder = tmp_path_factory.mktemp("gradescope")
     hidden = folder / "own"
     hidden.mkdir()
@@ -175,7 +173,7 @@ def zipped(tmp_path_factory):
     )
     with zipfile.ZipFile(archive) as opened:
         opened.extractall(folder / "source")
-        modes = {one.filename: one.external_attr >> 16 for one in opened.infolist()}
+        modes = {entry.filename: entry.external_attr >> 16 for entry in opened.infolist()}
     return folder, modes
 
 
@@ -224,7 +222,7 @@ def test_an_autograder_contains_hdrlab_its_checks_and_runnable_scripts(zipped):
 
 
 def run(root, tier="practice"):
-    """Run the autograder of a root folder as Gradescope does: it finds hdrlab in the zip alone."""
+    """Run the autograder in a root folder as Gradescope does: only the zip contains hdrlab."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["PYTHONPATH"] = str(root / "source")
     command = [sys.executable, "-m", "hdrlab.course.authoring.export.autograder", root, tier]
@@ -248,26 +246,26 @@ def handed_in(folder, tmp_path, name, text):
 
 @pytest.mark.grading
 def test_an_autograder_needs_only_the_files_of_its_zip(zipped, tmp_path):
-    found = run(handed_in(zipped[0], tmp_path, "hw2.py", RIGHT))
+    report = run(handed_in(zipped[0], tmp_path, "hw2.py", RIGHT))
     of = {
-        task: [one for one in found["tests"] if one["name"].startswith(f"{task}:")]
+        task: [check for check in report["tests"] if check["name"].startswith(f"{task}:")]
         for task in SHORT
     }
-    hidden = [one for one in found["tests"] if one["visibility"] == "after_published"]
+    hidden = [check for check in report["tests"] if check["visibility"] == "after_published"]
     assert len(hidden) == 1 and hidden[0]["output"] == "" and hidden[0]["score"] == 0
-    public = [one for one in of["hat"] if one not in hidden]
-    assert hidden[0]["name"] in [one["name"] for one in public]  # alike by name, and told apart
-    assert {one["status"] for one in public} == {"passed"}, public
-    assert found["score"] == pytest.approx(10 - hidden[0]["max_score"], abs=0.001)
-    assert of["irradiance"] and all(one["score"] == 0 for one in of["irradiance"])
-    assert {one["name"].partition(":")[0] for one in found["tests"]} == set(SHORT)
-    assert "irradiance was not found" in found["output"] and "not for credit" in found["output"]
+    public = [check for check in of["hat"] if check not in hidden]
+    assert hidden[0]["name"] in [check["name"] for check in public]  # both have the same name
+    assert {check["status"] for check in public} == {"passed"}, public
+    assert report["score"] == pytest.approx(10 - hidden[0]["max_score"], abs=0.001)
+    assert of["irradiance"] and all(check["score"] == 0 for check in of["irradiance"])
+    assert {check["name"].partition(":")[0] for check in report["tests"]} == set(SHORT)
+    assert "irradiance was not found" in report["output"] and "not for credit" in report["output"]
 
 
 @pytest.mark.grading
 def test_an_autograder_that_cannot_grade_reports_why_and_gives_no_points(zipped, tmp_path):
-    found = run(handed_in(zipped[0], tmp_path, "hw2.txt", RIGHT))
-    assert found["score"] == 0 and "expected a notebook" in found["output"]
+    report = run(handed_in(zipped[0], tmp_path, "hw2.txt", RIGHT))
+    assert report["score"] == 0 and "expected a notebook" in report["output"]
 
 
 def test_a_symbolic_link_is_not_accepted_as_a_submission(tmp_path):
@@ -292,10 +290,11 @@ def test_file_names_in_capitals_are_accepted_and_control_characters_are_not_prin
     (tmp_path / "source" / "settings.json").write_text('{"homework": "hw2", "secret": ""}')
     shutil.copy(plan.PLAN, tmp_path / "source" / "plan.toml")
     autograder.main(tmp_path)
-    said = json.loads((tmp_path / "results" / "results.json").read_text())["output"]
-    assert said.isprintable() and "expected one .ipynb file" in said
+    output = json.loads((tmp_path / "results" / "results.json").read_text())["output"]
+    assert output.isprintable() and "expected one .ipynb file" in output
 
 
 def test_the_same_course_gives_the_same_zip(short, tmp_path):
-    first, second = (next(iter(gradescope.export(short, tmp_path / name))) for name in ("a", "b"))
+    first = next(iter(gradescope.export(short, tmp_path / "a")))
+    second = next(iter(gradescope.export(short, tmp_path / "b")))
     assert first.read_bytes() == second.read_bytes()

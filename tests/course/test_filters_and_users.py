@@ -13,13 +13,14 @@ from hdrlab.course.sandbox.session import Unavailable
 
 
 class Rules:
-    """A filter of libseccomp that writes down what is added to it; of three calls it knows no number."""
+    """A fake filter of libseccomp that records its rules; it does not know three of the calls."""
 
     LACKING = {"arch_prctl": -1, "access": -10, "open": 0}
     made: list = []
 
     def __init__(self, default):
-        self.default, self.rules = default, []
+        self.default = default
+        self.rules = []
         self.made.append(self)
 
     def add_rule(self, action, call, *arguments):
@@ -31,7 +32,7 @@ class Rules:
 
 @pytest.fixture
 def seccomp(monkeypatch):
-    """A binding of libseccomp that knows a call by its name."""
+    """A fake binding of libseccomp that knows a call by its name."""
 
     def resolve(architecture, call):
         assert architecture == "native"
@@ -65,7 +66,7 @@ def numbers(*rooms):
     ]
 
 
-# of a check, beside what it may call with any argument; the numbers are those of the kernel's
+# system calls of a check with restricted arguments; the numbers are those of the kernel
 # headers
 NARROW = [
     ("allow", "clone", (0, "masked", 0x10000, 0x10000)),
@@ -115,7 +116,7 @@ def test_without_a_uid_map_no_user_can_be_leased(monkeypatch):
 
 
 class Held:
-    """A socket whose name another may have."""
+    """A socket whose name may be in use."""
 
     taken: set = set()
     made: list = []
@@ -140,9 +141,8 @@ def test_a_lease_takes_the_first_free_user_id_of_the_namespace(monkeypatch):
     monkeypatch.setattr(Held, "made", [])
     monkeypatch.setattr(users, "_mapped_users", lambda: [range(10), range(60707, 60710)])
     leased = [users.lease() for _ in range(2)]
-    assert [user for user, _ in leased] == [60707, 60709] and not any(
-        held.closed for _, held in leased
-    )
+    assert [user for user, _ in leased] == [60707, 60709]
+    assert not any(held.closed for _, held in leased)
     assert [held for held in Held.made if not held.closed] == [held for _, held in leased]
     assert Held.taken == {f"\0hdrlab-user-{user}" for user in (60707, 60708, 60709)}
     with pytest.raises(Unavailable):

@@ -26,38 +26,38 @@ def test_places_follow_votes_and_ties_share_a_place(cast):
     rows = ballots.standings(IDS, cast)
     assert sorted(row.artifact for row in rows) == IDS
     for row in rows:
-        assert row.votes == sum(row.artifact in one for one in cast)
+        assert row.votes == sum(row.artifact in ballot for ballot in cast)
         assert row.place == 1 + sum(other.votes > row.votes for other in rows)
         assert row.shared == sum(other.votes == row.votes for other in rows) - 1
 
 
 @given(some_ballots, st.randoms(use_true_random=False))
 def test_the_order_of_ballots_and_artifacts_does_not_change_places(cast, random):
-    shuffled, ids = list(cast), list(IDS)
+    shuffled = list(cast)
+    ids = list(IDS)
     random.shuffle(shuffled)
     random.shuffle(ids)
     assert ballots.standings(ids, shuffled) == ballots.standings(IDS, cast)
 
 
 @given(some_ballots, st.sampled_from(IDS))
-def test_another_vote_never_lowers_a_place(cast, one):
-    before, after = (
-        {row.artifact: row.place for row in ballots.standings(IDS, some)}
-        for some in (cast, [*cast, {one}])
-    )
-    assert after[one] <= before[one]
+def test_another_vote_never_lowers_a_place(cast, ballot):
+    before = {row.artifact: row.place for row in ballots.standings(IDS, cast)}
+    after = {row.artifact: row.place for row in ballots.standings(IDS, [*cast, {ballot}])}
+    assert after[ballot] <= before[ballot]
 
 
 def test_each_voter_sees_the_artifacts_in_a_different_order():
     orders = [tuple(tokens.shuffled(IDS, b"secret", f"voter {k}")) for k in range(200)]
     assert len(set(orders)) > 120  # of 720
-    first = [sum(order[0] == one for order in orders) for one in IDS]
+    first = [sum(order[0] == artifact for order in orders) for artifact in IDS]
     assert min(first) > 15  # 33 each, were it even
 
 
 def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
     room = small.make_gallery(tmp_path)
-    eve, fay = room.artifacts["eve"], room.artifacts["fay"]
+    eve = room.artifacts["eve"]
+    fay = room.artifacts["fay"]
     for marked in ([eve], [eve, fay], [fay], []):
         with store.writing(room.folder) as db:
             assert ballots.cast(db, "ann", marked, now=room.clock()) == len(marked)
@@ -68,7 +68,7 @@ def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
 
 
 def refuse_ballot(folder, marks_of):
-    """Cast a ballot that must be refused, after one for eve, and return what ann's ballot holds then."""
+    """Cast a ballot that must be refused, after one for eve, and return ann's ballot."""
     room = small.make_gallery(folder)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
@@ -126,7 +126,7 @@ def test_the_gradebook_lists_who_voted_but_not_the_votes(tmp_path):
 
 @pytest.fixture
 def hdrlab(tmp_path, monkeypatch, capsys):
-    """hdrlab(words) -> the exit code of `hdrlab gallery` and all that it said, in an empty folder."""
+    """hdrlab(words) -> the exit code of `hdrlab gallery` and its output, in an empty folder."""
     monkeypatch.chdir(tmp_path)
 
     def command(*words):
@@ -147,7 +147,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
     (art / "team1.txt").write_text("Dusk\nSeven frames.")
     (art / "eve.png").write_text("<svg/>")
     small.write_photo(art / "stranger\x1b[2J.png")
-    said = [
+    output = [
         hdrlab("init", "g", "--closes", "2020-01-01T00:00+01:00", "--title", "Spring"),
         hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00"),
         hdrlab("add", "g", "--roster", "roster.csv", "art"),
@@ -156,16 +156,15 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
         hdrlab("results", "g", "-o", "results.csv"),
         hdrlab("close", "g"),
     ]
-    assert [code for code, _ in said] == [0, 2, 0, 0, 0, 0, 2]
-    assert "3 voters, 1 artifacts added, 2 refused" in said[2][1] and "eve.png" in said[2][1]
-    assert "\x1b" not in said[2][1]
-    assert "stranger" in said[2][1] and "Traceback" not in "".join(text for _, text in said)
+    assert [code for code, _ in output] == [0, 2, 0, 0, 0, 0, 2]
+    assert "3 voters, 1 artifacts added, 2 refused" in output[2][1] and "eve.png" in output[2][1]
+    assert "\x1b" not in output[2][1]
+    assert "stranger" in output[2][1] and "Traceback" not in "".join(text for _, text in output)
     with open(tmp_path / "links.csv", encoding="utf-8-sig") as file:
         links = [row["link"] for row in csv.DictReader(file)]
-    assert len(set(links)) == 3 and all(
-        re.fullmatch(r"https://vote.test/enter/[\w-]{55}", one) for one in links
-    )
-    assert "0 personal links" in said[4][1]  # nobody's link is ended by asking twice
+    assert len(set(links)) == 3
+    assert all(re.fullmatch(r"https://vote.test/enter/[\w-]{55}", link) for link in links)
+    assert "0 personal links" in output[4][1]  # asking twice does not revoke a link
     with open(tmp_path / "results.csv", encoding="utf-8-sig") as file:
         assert [row["artifact"] for row in csv.DictReader(file)] == ["Dusk", "Dusk", ""]
 
@@ -176,12 +175,10 @@ def test_a_gallery_of_another_version_is_refused_with_a_remedy(tmp_path, hdrlab,
     with closing(store.connect(tmp_path / "g")) as db:
         db.execute(f"PRAGMA user_version = {version}")
     for words in (("close", "g"), ("results", "g", "-o", "r.csv")):
-        code, said = hdrlab(*words)
-        assert code == 2 and said.count("\n") <= 2, said
-        assert (
-            f"expected a gallery of version {store.SCHEMA_VERSION}, got" in said
-            and "gallery init" in said
-        )
+        code, output = hdrlab(*words)
+        assert code == 2 and output.count("\n") <= 2, output
+        assert f"expected a gallery of version {store.SCHEMA_VERSION}, got" in output
+        assert "gallery init" in output
     (tmp_path / "g" / store.DATABASE).write_text("half a database")
     assert hdrlab("close", "g")[0] == 2 and "cannot be read" in hdrlab("close", "g")[1]
 
@@ -191,9 +188,9 @@ def test_a_gallery_of_another_version_is_refused_with_a_remedy(tmp_path, hdrlab,
 def test_concurrent_voters_lose_no_ballot_and_none_counts_twice(tmp_path):
     from benchmarks import gallery as bench
 
-    found = bench.load(tmp_path, "apart", 24, within=1.0, changes=2)
-    assert (found["ballots lost"], found["ballots double"], found["refused"]) == (0, 0, 0)
-    assert found["voters"] == 24
+    load = bench.load(tmp_path, "apart", 24, within=1.0, changes=2)
+    assert (load["ballots lost"], load["ballots double"], load["refused"]) == (0, 0, 0)
+    assert load["voters"] == 24
 
 
 def test_gallery_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatch):
@@ -212,9 +209,9 @@ def test_gallery_benchmark_rows_write_into_separate_folders(tmp_path, monkeypatc
 def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
     from benchmarks import gallery as bench
 
-    found = bench.killed(tmp_path, 40, 1, after=1.0)
-    assert found["acknowledged ballots lost"] == 0
-    assert found["acknowledged before the kill"] >= 10
+    outcome = bench.killed(tmp_path, 40, 1, after=1.0)
+    assert outcome["acknowledged ballots lost"] == 0
+    assert outcome["acknowledged before the kill"] >= 10
 
 
 @pytest.mark.grading
@@ -225,6 +222,6 @@ def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
 def test_voters_are_served_while_incomplete_requests_hold_all_connections(tmp_path):
     from benchmarks import gallery as bench
 
-    found = bench.load(tmp_path, "apart", 12, within=0.5, changes=1, slow=200, descriptors=400)
-    assert (found["ballots lost"], found["refused"], found["voters"]) == (0, 0, 12)
-    assert 0 < found["bytes of log"] < 1000
+    load = bench.load(tmp_path, "apart", 12, within=0.5, changes=1, slow=200, descriptors=400)
+    assert (load["ballots lost"], load["refused"], load["voters"]) == (0, 0, 12)
+    assert 0 < load["bytes of log"] < 1000

@@ -39,7 +39,11 @@ pytestmark = pytest.mark.grading
 
 ORIGIN = {"origin": small.ADDRESS}
 ROSTER = Roster(
-    tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m)
+    tuple(
+        Student(student, student.title(), team)
+        for team, students in small.TEAMS.items()
+        for student in students
+    )
 )
 
 
@@ -50,7 +54,7 @@ def room(tmp_path):
 
 @contextmanager
 def browser(room, address=small.ADDRESS):
-    """Yield a browser that stands before the gallery."""
+    """Yield a browser connected to the gallery."""
     pages = app.Gallery(room.folder, address, room.clock)
     yield small.Browser(app.application(pages), address)
     asyncio.run(pages.close())
@@ -58,12 +62,12 @@ def browser(room, address=small.ADDRESS):
 
 @pytest.fixture
 def client(room):
-    with browser(room) as one:
-        yield one
+    with browser(room) as test_browser:
+        yield test_browser
 
 
 def enter(client, room, who):
-    """Sign somebody in, and return the key of their form."""
+    """Sign a voter in, and return the key of their form."""
     client.cookies.clear()
     answer = client.post(f"/enter/{room.links[who]}", headers=ORIGIN)
     assert answer.status == 303
@@ -131,10 +135,8 @@ def test_a_link_read_ahead(client, room):
 
 def test_a_link_that_leaks(client, room, capfd):
     page = client.get(f"/enter/{room.links['ann']}")
-    assert (
-        page.headers["referrer-policy"] == "same-origin"
-        and page.headers["cache-control"] == "no-store"
-    )
+    assert page.headers["referrer-policy"] == "same-origin"
+    assert page.headers["cache-control"] == "no-store"
     assert not re.findall(
         r'(?:src|href|action)="(?!/)', page.text
     )  # nothing on it is fetched elsewhere
@@ -239,15 +241,17 @@ SCRIPT = """"><script>alert(1)</script><img src=x onerror=alert(2)>{{7*7}}'"""
 
 
 class Reader(HTMLParser):
-    """What a browser would take for attributes and scripts, ours included."""
+    """The attributes and scripts of a page as a browser parses them, including the gallery's own."""
 
     def __init__(self):
         super().__init__()
-        self.attributes, self.scripts = [], []
+        self.attributes = []
+        self.scripts = []
 
     def handle_starttag(self, tag, attrs):
         self.attributes += [name for name, _ in attrs]
-        self.scripts += [dict(attrs)] if tag == "script" else []
+        if tag == "script":
+            self.scripts.append(dict(attrs))
 
 
 def test_script_in_a_name(tmp_path):
@@ -256,11 +260,9 @@ def test_script_in_a_name(tmp_path):
     with browser(room) as client:
         enter(client, room, "cy")
         page = client.get("/results")
-    assert (
-        "&lt;script&gt;alert(1)" in page.text
-        and "<script>alert" not in page.text
-        and "{{7*7}}" in page.text
-    )
+    assert "&lt;script&gt;alert(1)" in page.text
+    assert "<script>alert" not in page.text
+    assert "{{7*7}}" in page.text
     assert "<img src=x" not in page.text
     policy = page.headers["content-security-policy"]
     assert "default-src 'none'" in policy and "unsafe" not in policy and "*" not in policy
@@ -365,11 +367,11 @@ def test_only_the_start_of_a_caption_file_is_read_and_links_are_not_followed(tmp
 
 
 def handed_in(path, students=("ann",), title="t"):
-    """Write an archive as `hdrlab submit` makes it, whose description says anything."""
+    """Write an archive as `hdrlab submit` does, with any description."""
     small.write_photo(path.with_suffix(".png"), 11)
-    said = {"students": students, "title": title, "caption": "", "artifact": "a.png"}
+    settings = {"students": students, "title": title, "caption": "", "artifact": "a.png"}
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("submission.json", json.dumps(said))
+        archive.writestr("submission.json", json.dumps(settings))
         archive.write(path.with_suffix(".png"), "a.png")
     path.with_suffix(".png").unlink()
     return path
@@ -380,7 +382,8 @@ def handed_in(path, students=("ann",), title="t"):
     "name", ["eve.zip", "eve_project.zip", "eve/ann.zip", "eve/team1.zip", "EVE-ann.zip"]
 )
 def test_anothers_artifact(tmp_path, students, name):
-    room, folder = small.make_gallery(tmp_path), tmp_path / "in"
+    room = small.make_gallery(tmp_path)
+    folder = tmp_path / "in"
     (folder / name).parent.mkdir(parents=True)
     handed_in(folder / name, students)
     with closing(store.connect(room.folder)) as db:
@@ -389,9 +392,9 @@ def test_anothers_artifact(tmp_path, students, name):
             with collect.entry(path, ROSTER, owner) as entry:
                 assert entry.team == "eve"
                 collect.hang(db, room.folder, entry)
-        assert {id: one for id, one in store.artifacts(db).items() if one.team != "eve"} == {
-            id: one for id, one in before.items() if one.team != "eve"
-        }
+        assert {
+            id: artifact for id, artifact in store.artifacts(db).items() if artifact.team != "eve"
+        } == {id: artifact for id, artifact in before.items() if artifact.team != "eve"}
 
 
 @pytest.mark.parametrize(
@@ -409,7 +412,8 @@ def test_an_artifact_without_an_owner_in_the_roster_is_refused(tmp_path, name):
 
 
 def test_votes_erased(client, room, tmp_path):
-    eve, fay = room.artifacts["eve"], room.artifacts["fay"]
+    eve = room.artifacts["eve"]
+    fay = room.artifacts["fay"]
     vote(client, enter(client, room, "ann"), eve)
     vote(client, enter(client, room, "cy"), eve, fay)
     with closing(store.connect(room.folder)) as db:
@@ -434,9 +438,9 @@ def test_votes_erased(client, room, tmp_path):
 
 def test_an_archive_with_traps(tmp_path):
     small.write_photo(tmp_path / "a.png")
-    said = {"students": ["ann"], "title": "t", "caption": "", "artifact": "../a.png"}
+    settings = {"students": ["ann"], "title": "t", "caption": "", "artifact": "../a.png"}
     with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
-        archive.writestr("submission.json", json.dumps(said))
+        archive.writestr("submission.json", json.dumps(settings))
     with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
         archive.writestr("../planted.png", b"x")
     for name in ("one.zip", "two.zip"):
@@ -491,7 +495,7 @@ def test_a_slow_form(client, room, monkeypatch):
     monkeypatch.setattr(guard, "FORM_TIMEOUT_SECONDS", 0.05)
 
     class Slow(small.Browser):
-        def ask(self, *asked):
+        def ask(self, *arguments):
             async def slowly(scope, receive, send):
                 async def drip():
                     await asyncio.sleep(0.02)
@@ -500,7 +504,7 @@ def test_a_slow_form(client, room, monkeypatch):
                 await client.application(scope, drip, send)
 
             self.application = slowly
-            return super().ask(*asked)
+            return super().ask(*arguments)
 
     slow = Slow(None)
     slow.cookies = client.cookies
@@ -509,7 +513,7 @@ def test_a_slow_form(client, room, monkeypatch):
 
 @contextmanager
 def served(most):
-    """Yield the port of a server that answers "here", with so many connections at a time."""
+    """Yield the port of a server that answers "here" and allows so many connections."""
     import uvicorn
 
     async def here(scope, receive, send):
@@ -537,21 +541,23 @@ def served(most):
 
 def ask(port, text=b"GET / HTTP/1.1\r\nhost: a\r\n\r\n"):
     """Send bytes on a new connection, and return it."""
-    one = socket.create_connection(("127.0.0.1", port), timeout=20)
-    one.sendall(text)
-    return one
+    connection = socket.create_connection(("127.0.0.1", port), timeout=20)
+    connection.sendall(text)
+    return connection
 
 
-def closed(one):
+def closed(connection):
     """Return what the server sends before it closes a connection."""
-    said = b""
-    with one:
+    data = b""
+    with connection:
         try:
-            while piece := one.recv(4096):
-                said += piece
+            piece = connection.recv(4096)
+            while piece:
+                data += piece
+                piece = connection.recv(4096)
         except ConnectionResetError:
             pass
-    return said
+    return data
 
 
 HALF = {
@@ -568,20 +574,22 @@ HALF = {
 def test_half_a_request(sent, monkeypatch):
     monkeypatch.setattr(serve, "REQUEST_TIMEOUT_SECONDS", 0.2)
     with served(50) as port:
-        said = closed(ask(port, sent))  # which ends: nobody waits for the rest
-        assert said.count(b"200 OK") == sent.startswith(
-            b"POST"
-        )  # a form is refused without being read
+        data = closed(ask(port, sent))  # returns: the server does not wait for the rest
+        # the server answers a form without reading it
+        assert data.count(b"200 OK") == sent.startswith(b"POST")
         whole = ask(port)
-        assert closed(whole).endswith(b"here")  # and no connection is kept for nothing
+        assert closed(whole).endswith(b"here")  # the server closes the connection
 
 
 def answer(connection):
-    """Return an answer of the small server, whose head and body may come apart."""
-    came = connection.recv(4096)
-    while not came.endswith(b"here") and (more := connection.recv(4096)):
-        came += more
-    return came
+    """Return an answer of the small server, whose head and body may arrive separately."""
+    received = connection.recv(4096)
+    while not received.endswith(b"here"):
+        piece = connection.recv(4096)
+        if not piece:
+            break
+        received += piece
+    return received
 
 
 def test_a_full_server_closes_the_oldest_incomplete_request(monkeypatch, caplog):
@@ -595,8 +603,8 @@ def test_a_full_server_closes_the_oldest_incomplete_request(monkeypatch, caplog)
             assert closed(waiting[k]) == b""  # the oldest has gone
         waiting[-1].sendall(b"TP/1.1\r\nhost: a\r\n\r\n")  # who was slow and is whole is answered
         assert answer(waiting[-1]).endswith(b"here")
-        for one in (*voters, *waiting[4:]):
-            one.close()
+        for connection in (*voters, *waiting[4:]):
+            connection.close()
     assert [
         record.message.split(":")[0] for record in caplog.records if record.name == "hdrlab.gallery"
     ] == ["full"]
@@ -604,20 +612,19 @@ def test_a_full_server_closes_the_oldest_incomplete_request(monkeypatch, caplog)
 
 def test_a_full_log(tmp_path):
     root = logging.getLogger()
-    handlers, level = root.handlers[:], root.level
+    handlers = root.handlers[:]
+    level = root.level
     try:
         serve.keep_log(tmp_path)
         for _ in range(300):
             serve.log.warning("x" * 20_000)
         sizes = [path.stat().st_size for path in tmp_path.iterdir()]
-        assert (
-            len(sizes) == 1 + serve.KEPT_OLD_LOGS
-            and max(sizes) <= serve.MAX_LOG_BYTES
-            and sum(sizes) > serve.MAX_LOG_BYTES
-        )
+        assert len(sizes) == 1 + serve.KEPT_OLD_LOGS
+        assert max(sizes) <= serve.MAX_LOG_BYTES
+        assert sum(sizes) > serve.MAX_LOG_BYTES
     finally:
-        for one in root.handlers:
-            one.close()
+        for handler in root.handlers:
+            handler.close()
         root.handlers[:] = handlers
         root.setLevel(level)
 
@@ -627,20 +634,20 @@ def test_the_connection_limit_leaves_file_descriptors_for_the_rest(monkeypatch):
     limits = [(1024, 1024), (256, 4096), (20_000, 20_000), (1024, resource.RLIM_INFINITY)]
     for soft, hard in limits:
         set_to = []
-        monkeypatch.setattr(resource, "getrlimit", lambda which, found=(soft, hard): found)
+        monkeypatch.setattr(resource, "getrlimit", lambda which, pair=(soft, hard): pair)
         monkeypatch.setattr(resource, "setrlimit", lambda which, to, kept=set_to: kept.append(to))
-        most, open_files = serve.connection_limit(), (set_to or [(soft, hard)])[-1][0]
-        assert (
-            300 < most <= serve.MAX_CONNECTIONS
-            and most + serve.BACKLOG_CONNECTIONS + serve.OTHER_DESCRIPTORS <= open_files
-        )
+        most = serve.connection_limit()
+        open_files = (set_to or [(soft, hard)])[-1][0]
+        assert 300 < most <= serve.MAX_CONNECTIONS
+        assert most + serve.BACKLOG_CONNECTIONS + serve.OTHER_DESCRIPTORS <= open_files
     monkeypatch.setattr(resource, "getrlimit", lambda which: (300, 300))
     with pytest.raises(ValueError, match="ulimit"):
         serve.connection_limit()
 
 
 def test_csrf(client, room):
-    key, eve = enter(client, room, "ann"), room.artifacts["eve"]
+    key = enter(client, room, "ann")
+    eve = room.artifacts["eve"]
     cookie = client.cookies["gallery"]
     form = {"key": key, "mark": eve}
     assert client.post("/ballot", form).status == 403
@@ -695,9 +702,8 @@ def test_clickjacking(client, room):
     for path in ("/", "/nothing", "/static/wall.js", f"/picture/{room.artifacts['eve']}/small"):
         headers = client.get(path).headers
         assert "frame-ancestors 'none'" in headers["content-security-policy"]
-        assert (
-            headers["x-frame-options"] == "DENY" and headers["x-content-type-options"] == "nosniff"
-        )
+        assert headers["x-frame-options"] == "DENY"
+        assert headers["x-content-type-options"] == "nosniff"
 
 
 def test_enumeration(client, room, tmp_path):
@@ -733,10 +739,8 @@ def test_header_injection(client, room):
         with closing(renewed) as db, store.transaction(db):
             fresh = tokens.new_link(db, "ann")
         answer = secure.post(f"/enter/{fresh}", headers={"origin": "https://vote.test"})
-        assert (
-            answer.headers["set-cookie"].startswith("__Host-gallery=")
-            and "Secure" in answer.headers["set-cookie"]
-        )
+        assert answer.headers["set-cookie"].startswith("__Host-gallery=")
+        assert "Secure" in answer.headers["set-cookie"]
         assert answer.headers["strict-transport-security"]
 
 
@@ -755,7 +759,7 @@ def test_a_flood(client, room):
     key = enter(client, room, "ann")
     codes = [vote(client, key, room.artifacts["eve"]).status for _ in range(40)]
     assert codes[:25] == [303] * 25 and codes[-1] == 429
-    enter(client, room, "cy")  # nobody else is held up
+    enter(client, room, "cy")  # other voters are not blocked
     assert vote(client, small.form_key(client.get("/").text), room.artifacts["eve"]).status == 303
 
 

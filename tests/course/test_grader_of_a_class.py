@@ -13,9 +13,10 @@ from hdrlab.course.plan import GradingOptions
 from hdrlab.course.sandbox.session import Unavailable
 
 
-def grader(monkeypatch, *each, **knobs):
-    """Return a Grader whose tries give these results, and what each was asked."""
-    left, asked = list(each), []
+def grader(monkeypatch, *results, **knobs):
+    """Return a Grader whose attempts give these results, and the list of its calls."""
+    left = list(results)
+    calls = []
 
     def grade(path, homework, conditions):
         files = (
@@ -27,11 +28,11 @@ def grader(monkeypatch, *each, **knobs):
                 if path.is_file()
             }
         )
-        asked.append((path, conditions.student, files))
+        calls.append((path, conditions.student, files))
         return left.pop(0)
 
     monkeypatch.setattr(run.grader, "grade", grade)
-    return Grader(HOMEWORK, GradingOptions(**knobs.pop("conditions", {})), **knobs), asked
+    return Grader(HOMEWORK, GradingOptions(**knobs.pop("conditions", {})), **knobs), calls
 
 
 JOB = GradingJob("t", "file", "key")
@@ -52,13 +53,13 @@ JOB = GradingJob("t", "file", "key")
 def test_a_killed_submission_is_graded_again_until_the_result_repeats(
     tries, tried, counts, monkeypatch
 ):
-    made, asked = grader(monkeypatch, *(make_result("x", *kinds) for kinds in tries))
+    made, calls = grader(monkeypatch, *(make_result("x", *kinds) for kinds in tries))
     if counts is None:
         with pytest.raises(ValueError, match="ended .*answer, each time at another check"):
             made.grade(JOB)
     else:
         assert made.grade(JOB) == results.to_json(make_result("t", *tries[counts]))
-    assert len(asked) == tried
+    assert len(calls) == tried
 
 
 @pytest.mark.parametrize(("secret", "student"), [("", ""), ("s", "t")])
@@ -66,21 +67,21 @@ def test_a_secret_gives_each_student_their_own_inputs_and_hidden_checks_are_incl
     secret, student, monkeypatch
 ):
     files = [("test_a.py", b"1"), ("data/b/x.npy", b"2"), ("data/b/y.npy", b"3")]
-    made, asked = grader(monkeypatch, make_result("x"), conditions={"secret": secret}, hidden=files)
+    made, calls = grader(monkeypatch, make_result("x"), conditions={"secret": secret}, hidden=files)
     made.grade(JOB)
-    assert asked == [("file", student, dict(files))]
-    made, asked = grader(monkeypatch, make_result("x"))
+    assert calls == [("file", student, dict(files))]
+    made, calls = grader(monkeypatch, make_result("x"))
     made.grade(JOB)
-    assert asked == [("file", "", {})]
+    assert calls == [("file", "", {})]
 
 
 def test_the_tier_of_a_machine_is_checked_once(monkeypatch):
-    asked = []
+    calls = []
     monkeypatch.setattr(
         run.doctor,
         "examine",
         lambda tier: (
-            asked.append(tier) or SimpleNamespace(works=tier != "none", details="no walls")
+            calls.append(tier) or SimpleNamespace(works=tier != "none", details="no walls")
         ),
     )
     run._check_tier_available.cache_clear()
@@ -92,7 +93,7 @@ def test_the_tier_of_a_machine_is_checked_once(monkeypatch):
         else:
             made.check_available()
     run._check_tier_available.cache_clear()
-    assert asked == ["some", "none"]
+    assert calls == ["some", "none"]
 
 
 def test_hidden_checks_are_read_up_to_the_size_limit(tmp_path, monkeypatch):

@@ -156,7 +156,7 @@ cp -r "$root/autograder/results" "$shared/memory"
 
 
 def can_overlay():
-    """Return whether this user may lay a file system over this machine's."""
+    """Return whether this user may mount an overlay file system."""
     if not shutil.which("unshare") or os.geteuid() != 0:
         return False
     probe = (
@@ -169,7 +169,7 @@ def can_overlay():
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory):
-    """Return the folder with what the autograder has written for each submission."""
+    """Return the folder with the autograder's output for each submission."""
     if not can_overlay():
         pytest.skip("needs root, and a kernel that overlays file systems")
     if not shutil.which("apt-get"):
@@ -201,8 +201,8 @@ def graded(tmp_path_factory):
         command, env={**os.environ, **settings}, capture_output=True, text=True, timeout=900
     )
     log = shared / "setup.log"
-    said = log.read_text() if log.is_file() else ""
-    assert ran.returncode == 0, said[-3000:] + ran.stderr
+    log_text = log.read_text() if log.is_file() else ""
+    assert ran.returncode == 0, log_text[-3000:] + ran.stderr
     return shared
 
 

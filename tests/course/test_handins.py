@@ -23,9 +23,9 @@ LATE = NOON + timedelta(days=9)
 
 @pytest.fixture
 def find(tmp_path):
-    """find({name: text}, rows) -> what is found; the files' own times are late."""
+    """find({name: text}, rows) -> the scan of a folder with these files, whose own times are late."""
 
-    def found(files, rows=None, roster=ROSTER):
+    def find(files, rows=None, roster=ROSTER):
         for name, text in files.items():
             path = tmp_path / "in" / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -41,47 +41,45 @@ def find(tmp_path):
         )
         return class_folder.find(tmp_path / "in", roster, class_folder.read_times(table))
 
-    return found
+    return find
 
 
-def came(found):
-    return {team: one.received for team, one in found.submissions.items()}
+def came(scan):
+    return {team: submission.received for team, submission in scan.submissions.items()}
 
 
 def test_a_file_in_another_students_folder_does_not_get_a_received_time_by_its_name(find):
-    found = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
-    assert came(found) == {"b05": NOON, "b06": LATE}
-    assert any("b06/b05_hw2.ipynb" in note and "not in the table" in note for note in found.notes)
-    assert "not in the table" in found.submissions["b06"].note and not found.submissions["b05"].note
+    scan = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
+    assert came(scan) == {"b05": NOON, "b06": LATE}
+    assert any("b06/b05_hw2.ipynb" in note and "not in the table" in note for note in scan.notes)
+    assert "not in the table" in scan.submissions["b06"].note and not scan.submissions["b05"].note
 
 
 @pytest.mark.parametrize("name", ["b05/hw2.ipynb", "./b05/hw2.ipynb", "b05\\hw2.ipynb"])
 def test_received_times_are_found_with_one_folder_per_student(find, name):
-    found = find({"b05/hw2.ipynb": "x", "b06/hw2.ipynb": "y"}, {name: NOON, "b06/hw2.ipynb": NOON})
-    assert came(found) == {"b05": NOON, "b06": NOON} and found.notes == ()
+    scan = find({"b05/hw2.ipynb": "x", "b06/hw2.ipynb": "y"}, {name: NOON, "b06/hw2.ipynb": NOON})
+    assert came(scan) == {"b05": NOON, "b06": NOON} and scan.notes == ()
 
 
 @pytest.mark.parametrize(
     "theirs", ["b05_hw2.ipynb", "B05_hw2.ipynb", "b05.ipynb", "hw2.ipynb", "t1_hw2.ipynb"]
 )
 def test_a_file_name_cannot_claim_the_received_time_of_another_student(find, theirs):
-    found = find({f"b06/{theirs}": "y"}, {theirs: NOON})
-    assert came(found) == {"b06": LATE}
-    assert any("there is no such file" in note for note in found.notes)
+    scan = find({f"b06/{theirs}": "y"}, {theirs: NOON})
+    assert came(scan) == {"b06": LATE}
+    assert any("there is no such file" in note for note in scan.notes)
 
 
 def test_a_received_time_without_a_folder_applies_to_the_file_in_the_folder_of_its_owner(find):
-    found = find({"b05/b05_hw2.ipynb": "x"}, {"b05_hw2.ipynb": NOON})
-    assert came(found) == {"b05": NOON} and found.notes == ()
+    scan = find({"b05/b05_hw2.ipynb": "x"}, {"b05_hw2.ipynb": NOON})
+    assert came(scan) == {"b05": NOON} and scan.notes == ()
 
 
 def test_received_times_without_a_file_and_files_without_a_time_are_noted(find):
-    found = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
-    assert any(note.startswith("b02.py") and "no such file" in note for note in found.notes)
-    assert (
-        any(note.startswith("b06.py") and "not in the table" in note for note in found.notes)
-        and len(found.notes) == 2
-    )
+    scan = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
+    assert any(note.startswith("b02.py") and "no such file" in note for note in scan.notes)
+    assert any(note.startswith("b06.py") and "not in the table" in note for note in scan.notes)
+    assert len(scan.notes) == 2
 
 
 def test_without_a_table_of_received_times_there_is_no_note(find):
@@ -95,8 +93,8 @@ def test_two_received_times_for_one_file_are_an_error(find):
 
 def test_file_names_match_in_any_unicode_normalization(find):
     roster = Roster((Student("zo\u00e9", "Z", "zo\u00e9"),))
-    found = find({"zoe\u0301_hw2.py": "x"}, {"zo\u00e9_hw2.py": NOON}, roster)
-    assert came(found) == {"zo\u00e9": NOON}
+    scan = find({"zoe\u0301_hw2.py": "x"}, {"zo\u00e9_hw2.py": NOON}, roster)
+    assert came(scan) == {"zo\u00e9": NOON}
 
 
 @pytest.mark.parametrize("name", ["b05", "B05", "\uff22\uff10\uff15"])
@@ -109,12 +107,12 @@ def test_a_file_belongs_to_the_student_that_its_name_or_folder_starts_with(find,
     "name", ["b055.py", "b0.py", "xb05.py", "\u200bb05.py", "b05\u0301.py", "nobody/b05.py"]
 )
 def test_a_name_that_only_resembles_a_student_is_not_assigned(find, name):
-    found = find({name: "x"})
-    assert found.submissions == {} and "no student or team" in found.notes[0]
+    scan = find({name: "x"})
+    assert scan.submissions == {} and "no student or team" in scan.notes[0]
 
 
 def awkward(kind, path):
-    """Make a file that is none, or one that nobody could grade."""
+    """Make something that is not a file, or a file that cannot be graded."""
     path.parent.mkdir(exist_ok=True)
     if kind == "link":
         path.symlink_to("/etc/passwd")
@@ -137,30 +135,29 @@ def test_an_ungradable_file_is_noted_and_other_submissions_are_found(find, tmp_p
     odd = tmp_path / "in" / "b05" / ("hw2.docx" if kind == "document" else "hw2.py")
     odd.parent.mkdir(parents=True)
     awkward(kind, odd)
-    found = find({"b06.py": "y"})
-    assert set(found.submissions) == {"b06"} and set(found.refused) == {"b05"}
-    assert found.refused["b05"] == found.notes[0] and found.notes[0].startswith("b05/hw2")
+    scan = find({"b06.py": "y"})
+    assert set(scan.submissions) == {"b06"} and set(scan.refused) == {"b05"}
+    assert scan.refused["b05"] == scan.notes[0] and scan.notes[0].startswith("b05/hw2")
 
 
 def test_a_folder_with_too_many_files_gives_one_note(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
     for k in range(class_folder.MAX_FILES_PER_FOLDER + 1):
         (tmp_path / "in" / "b05" / f"{k}.py").touch()
-    found = find({"b06.py": "y"})
-    (note,) = found.notes
+    scan = find({"b06.py": "y"})
+    (note,) = scan.notes
     assert note.startswith("b05") and "1000 files" in note
-    assert set(found.submissions) == {"b06"} and found.refused == {"b05": found.notes[0]}
+    assert set(scan.submissions) == {"b06"} and scan.refused == {"b05": scan.notes[0]}
 
 
 def test_an_unreadable_file_is_noted(find, monkeypatch):
     real = os.access
     monkeypatch.setattr(
-        os, "access", lambda path, asked: "b05" not in str(path) and real(path, asked)
+        os, "access", lambda path, mode: "b05" not in str(path) and real(path, mode)
     )
-    found = find({"b05.py": "x", "b06.py": "y"})
-    assert found.refused == {"b05": "b05.py: a file that cannot be read"} and set(
-        found.submissions
-    ) == {"b06"}
+    scan = find({"b05.py": "x", "b06.py": "y"})
+    assert scan.refused == {"b05": "b05.py: a file that cannot be read"}
+    assert set(scan.submissions) == {"b06"}
 
 
 def test_only_the_file_that_counts_is_read(find, monkeypatch):
@@ -178,7 +175,7 @@ def test_only_the_file_that_counts_is_read(find, monkeypatch):
 @pytest.mark.parametrize("seconds", [316_000_000_000, 1e30, -1e15])
 def test_an_impossible_modification_time_is_noted(seconds, monkeypatch):
     status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
-    monkeypatch.setattr(os, "access", lambda *asked: True)
+    monkeypatch.setattr(os, "access", lambda *arguments: True)
     odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
     assert "before the year 10000" in class_folder.find_problem(odd)
 
@@ -186,18 +183,16 @@ def test_an_impossible_modification_time_is_noted(seconds, monkeypatch):
 def test_an_ungradable_file_does_not_hide_an_earlier_valid_one(find, tmp_path):
     (tmp_path / "in" / "b05").mkdir(parents=True)
     awkward("link", tmp_path / "in" / "b05" / "later.py")
-    found = find({"b05/hw2.py": "x"})
-    assert (
-        found.submissions["b05"].path.name == "hw2.py"
-        and found.refused == {}
-        and len(found.notes) == 1
-    )
+    scan = find({"b05/hw2.py": "x"})
+    assert scan.submissions["b05"].path.name == "hw2.py"
+    assert scan.refused == {}
+    assert len(scan.notes) == 1
 
 
 def test_a_file_without_a_received_time_cannot_be_late_unless_file_times_count(tmp_path):
     (tmp_path / "b05.py").write_text("x")
     for file_times in (False, True):
-        found = class_folder.find(tmp_path, ROSTER, file_times=file_times)
-        assert found.submissions["b05"].can_be_late == file_times
+        scan = class_folder.find(tmp_path, ROSTER, file_times=file_times)
+        assert scan.submissions["b05"].can_be_late == file_times
     timed = class_folder.find(tmp_path, ROSTER, {"b05.py": NOON})
     assert timed.submissions["b05"].can_be_late

@@ -49,7 +49,7 @@ def committed(folder, name):
 
 
 def bare(notebook):
-    """Return a notebook without what running it added."""
+    """Return a notebook without the traces of a run."""
     cells = []
     for cell in notebook["cells"]:
         source = cell["source"] if isinstance(cell["source"], str) else "".join(cell["source"])
@@ -84,9 +84,9 @@ def test_the_committed_solution_was_run_and_passes_every_check(name):
         output for cell in committed(SOURCES, name)["cells"] for output in cell.get("outputs", ())
     ]
     assert not [
-        one for one in outputs if one["output_type"] == "error" or one.get("name") == "stderr"
+        data for data in outputs if data["output_type"] == "error" or data.get("name") == "stderr"
     ]
-    texts = ["".join(one.get("data", {}).get("text/plain", "")) for one in outputs]
+    texts = ["".join(data.get("data", {}).get("text/plain", "")) for data in outputs]
     checked = [
         text for text in texts if re.search(r"^\S+: [\d.]+ of [\d.]+ points$", text, re.MULTILINE)
     ]
@@ -98,19 +98,19 @@ def test_the_committed_solution_was_run_and_passes_every_check(name):
 
 def bound_names(source):
     """Return the names that a cell binds outside of functions and classes."""
-    found = set()
+    names = set()
     for statement in ast.parse(source).body:
         if isinstance(statement, ast.FunctionDef | ast.ClassDef):
-            found.add(statement.name)
+            names.add(statement.name)
         elif isinstance(statement, ast.Assign):
             targets = [node for target in statement.targets for node in ast.walk(target)]
-            found |= {node.id for node in targets if isinstance(node, ast.Name)}
-    return found
+            names |= {node.id for node in targets if isinstance(node, ast.Name)}
+    return names
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_cell_that_shows_a_result_rebinds_a_name_of_a_solution(made, name):
-    """Otherwise the checks of the whole notebook would take the rebound name for the helper."""
+    """Otherwise the checks of the whole notebook would use the rebound name instead of the helper."""
     is_solution = re.compile(
         "|".join(rf"^def {task.id}\(" for task in PLAN.homeworks[name].tasks), re.M
     )
@@ -141,7 +141,9 @@ def test_every_figure_of_a_solution_has_an_alt_text(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_an_assignment_contains_no_solution(made, name):
-    """A task's cell has the signature, the docstring and the stub; nothing else of the function."""
+    """The cell of a task has the signature, the docstring and the stub, and nothing else of the
+    function.
+    """
     for cell in made(name).assignment["cells"]:
         task = cell["metadata"].get("hdrlab", {}).get("task")
         if task is not None:
@@ -155,10 +157,8 @@ def test_every_task_has_a_cell_a_check_and_its_points(made, name):
     cells = {cell["id"]: cell for cell in made(name).assignment["cells"]}
     prose = "\n".join(cell["source"] for cell in cells.values() if cell["cell_type"] == "markdown")
     for task in PLAN.homeworks[name].tasks:
-        assert (
-            f"task-{task.id}" in cells
-            and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
-        )
+        assert f"task-{task.id}" in cells
+        assert cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
         required = ", required" if task.minimum else ""
         assert f"({task.points:g} points{required})" in prose
     assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
@@ -169,16 +169,14 @@ def test_a_task_that_the_plan_leaves_out_disappears_with_its_prose_and_figures()
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     hw2 = PLAN.homeworks["hw2"]
     few = hw2._replace(
-        tasks=tuple(Task(one.id, one.function, 3) for one in hw2.tasks if one.id == "hat")
+        tasks=tuple(Task(task.id, task.function, 3) for task in hw2.tasks if task.id == "hat")
     )
     made = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), few)
     text = "\n".join(cell["source"] for cell in made.assignment["cells"])
-    assert (
-        "(3 points)" in text
-        and "def hat" in text
-        and "gsolve" not in text
-        and "Robertson" not in text
-    )
+    assert "(3 points)" in text
+    assert "def hat" in text
+    assert "gsolve" not in text
+    assert "Robertson" not in text
 
 
 def test_check_uses_the_points_of_the_assignment(made, monkeypatch):
@@ -221,10 +219,10 @@ def test_two_or_three_of_the_four_papers_give_all_points_of_homework_4():
     pairs = {
         frozenset(two)
         for two in combinations(papers, 2)
-        if sum(papers[one] for one in two) >= needed
+        if sum(papers[paper] for paper in two) >= needed
     }
     assert {frozenset(("durand", "ward")), frozenset(("chiu", "fattal"))} <= pairs
-    assert all(sum(papers[one] for one in three) >= needed for three in combinations(papers, 3))
+    assert all(sum(papers[paper] for paper in three) >= needed for three in combinations(papers, 3))
     assert max(papers.values()) < needed
 
 
@@ -246,18 +244,18 @@ def test_an_assignment_marks_the_required_tasks(made):
 
 def test_the_project_assignment_contains_the_rubric(made):
     text = "".join(made("project").assignment["cells"][0]["source"])
-    for one in PLAN.homeworks["project"].by_hand:
-        assert f"- **{one.title}** ({one.points:g} points)\n  - {one.points:g}: " in text
-        earned = [float(line.partition(":")[0]) for line in one.rubric]
-        assert (
-            len(earned) > 1 and earned == sorted(earned, reverse=True) and earned[0] == one.points
-        )
+    for item in PLAN.homeworks["project"].by_hand:
+        assert f"- **{item.title}** ({item.points:g} points)\n  - {item.points:g}: " in text
+        earned = [float(line.partition(":")[0]) for line in item.rubric]
+        assert len(earned) > 1
+        assert earned == sorted(earned, reverse=True)
+        assert earned[0] == item.points
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
 def test_an_assignment_with_one_task_runs_without_the_others(task):
     pytest.importorskip("jupytext", reason="jupytext is not installed")
-    name = next(one for one in NAMES if task in PLAN.homeworks[one].tasks)
+    name = next(homework for homework in NAMES if task in PLAN.homeworks[homework].tasks)
     alone = PLAN.homeworks[name]._replace(tasks=(task,))
     made = handouts.handout((SOURCES / f"{name}.py").read_text(encoding="utf8"), alone)
     known = set(dir(builtins))
@@ -270,7 +268,9 @@ def test_an_assignment_with_one_task_runs_without_the_others(task):
 
 @pytest.mark.notebooks
 def test_building_writes_the_assignment_and_the_solution_only(tmp_path):
-    """In a process of its own: notebooks are run with asyncio, and a browser may hold this one's loop."""
+    """In a separate process, because notebooks run with asyncio, and a browser may use the loop of this
+    one.
+    """
     pytest.importorskip("jupytext", reason="jupytext is not installed")
     (tmp_path / "plan.toml").write_text(SHORT)
     options = [
@@ -299,8 +299,8 @@ def test_building_writes_the_assignment_and_the_solution_only(tmp_path):
     }
     assert files == {"plan.toml", "assignments/hw3.ipynb", "worked/hw3.ipynb"}
     worked = json.loads((tmp_path / "worked" / "hw3.ipynb").read_text())
-    said = [output for cell in worked["cells"] for output in cell.get("outputs", ())]
-    assert any("to_radiance: 10 of 10 points" in json.dumps(one) for one in said)
+    outputs = [output for cell in worked["cells"] for output in cell.get("outputs", ())]
+    assert any("to_radiance: 10 of 10 points" in json.dumps(data) for data in outputs)
     assert not any("execution" in cell["metadata"] for cell in worked["cells"])
 
 

@@ -21,37 +21,41 @@ ODD = ("a huge sparse notebook", "a pipe", "a link to a device", "a folder in a 
 
 
 def written(folder):
-    """Write what hostile students hand in, and return whose it is."""
-    who = iter(f"x{k:02d}" for k in range(1, 99))
-    each = {}
+    """Write the submissions of hostile students, and return the name of the attack by student."""
+    students = iter(f"x{k:02d}" for k in range(1, 99))
+    submissions = {}
     for name in [*CODE, *TEXTS]:
-        each[student := next(who)] = name
+        student = next(students)
+        submissions[student] = name
         (folder / f"{student}_hw2.py").write_text(
             (hostile_submissions.HOSTILE_CODE | hostile_submissions.CODE_WITH_NASTY_TEXTS)[name]
         )
     for name in FILES:
-        each[student := next(who)] = name
+        student = next(students)
+        submissions[student] = name
         ending, made = hostile_submissions.UNREADABLE_FILES[name]
         (folder / f"{student}_hw2{ending}").write_bytes(made())
     for name in NAMES:
-        each[student := next(who)] = name
+        student = next(students)
+        submissions[student] = name
         with open(
             os.fsencode(folder / student) + hostile_submissions.NASTY_FILE_NAMES[name], "w"
         ) as file:
             file.write("def hat(n=256:\n")
     for name in ODD:
-        each[student := next(who)] = name
+        student = next(students)
+        submissions[student] = name
         ending, made = hostile_submissions.ODD_FILES[name]
         made(folder / f"{student}_hw2{ending}")
-    return each
+    return submissions
 
 
 @pytest.fixture
 def grade(tmp_path, monkeypatch):
-    """grade(folder) -> the rows of its gradebook, and the bytes of each team's files, in the strict tier."""
-    found = doctor.examine("strict")
-    if not found.works:
-        pytest.skip(found.details)
+    """grade(folder) -> the rows of its gradebook, and the files of each team, in the strict tier."""
+    findings = doctor.examine("strict")
+    if not findings.works:
+        pytest.skip(findings.details)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "plan.toml").write_text(PLAN)
 

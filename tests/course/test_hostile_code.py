@@ -45,7 +45,7 @@ KINDS = {  # of no answer; the others answer with something that is compared
 
 @pytest.fixture(scope="module")
 def strict():
-    """The strict tier, or the machine's reason why there is none."""
+    """The strict tier; skip the test if this machine cannot run it."""
     try:
         with Subject({"hat": hostile_submissions.CORRECT_CODE}, tiers.choose("strict")) as subject:
             subject.hat(3)
@@ -58,7 +58,11 @@ def strict():
 def test_a_hostile_function_fails_only_its_own_call(name, strict):
     kinds = KINDS.get(name, ())
     late = kinds == ("late",)
-    patience = 0.3 if late else 3.0 if "late" in kinds else 20.0
+    patience = 20.0
+    if late:
+        patience = 0.3
+    elif "late" in kinds:
+        patience = 3.0
     with Subject({"hat": hostile_submissions.HOSTILE_CODE[name]}, strict, patience) as subject:
         try:
             kind = bool(subject.hat(8) is None)
@@ -75,7 +79,7 @@ def test_a_hostile_function_fails_only_its_own_call(name, strict):
 
 def test_time_limits_of_a_check_and_of_a_submission_are_reported(strict):
     source = "import time\ndef hat(n):\n    time.sleep(0.08)\n    return n\n"
-    said = []
+    messages = []
     with Subject({"hat": source}, strict, 0.1) as subject:
         for _ in range(12):
             subject.fresh()
@@ -83,9 +87,9 @@ def test_time_limits_of_a_check_and_of_a_submission_are_reported(strict):
                 try:
                     subject.hat(8)
                 except NoAnswer as error:
-                    said.append(str(error))
-    assert any("0.3 s" in message and "check" in message for message in said)
-    assert "hat" in said[-1] and "2 s" in said[-1]
+                    messages.append(str(error))
+    assert any("0.3 s" in message and "check" in message for message in messages)
+    assert "hat" in messages[-1] and "2 s" in messages[-1]
 
 
 def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
@@ -93,19 +97,19 @@ def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
         {"hat": hostile_submissions.HOSTILE_CODE["computes in each call"]}, strict, 0.3
     ) as subject:
         subject._session.cpu_seconds_left = 0.1
-        said = []
+        messages = []
         for _ in range(2):
             subject.fresh()
             with pytest.raises(NoAnswer) as raised:
                 subject.hat(8)
-            said.append(str(raised.value))
+            messages.append(str(raised.value))
             subject._close_link()
             subject._session.clear_check()
             subject._session.cpu_seconds_left = min(
                 subject._session.cpu_seconds_left, 0.0
             )  # a busy machine may not have used it
-    assert "hat" in said[0] and "0.3 s" in said[0]
-    assert "1.2 s" in said[1] and "processor time" in said[1]
+    assert "hat" in messages[0] and "0.3 s" in messages[0]
+    assert "1.2 s" in messages[1] and "processor time" in messages[1]
 
 
 def test_a_process_at_its_processor_limit_counts_as_late(strict):
@@ -138,7 +142,7 @@ def test_a_killed_process_is_distinguished_from_one_that_exits(strict):
 
 
 def _silent(running):
-    """Return what gives a link whose other end has closed."""
+    """Return a function that returns a connection whose other end is closed."""
 
     def check():
         ours, theirs = socket.socketpair()
@@ -162,15 +166,15 @@ def test_an_exception_that_imitates_the_grader_gets_no_second_try(tmp_path, monk
     assert len(tries) == 1
 
 
-def result(**told):
-    """Return a result of one check that does not hold, as grading makes one."""
-    check = Check("hat", "test_a", "A promise", Fraction(), Fraction(1), "no answer", **told)
+def result(**fields):
+    """Return a Result with one failed check."""
+    check = Check("hat", "test_a", "A promise", Fraction(), Fraction(1), "no answer", **fields)
     return Result("b1", "hw2", "T", "strict", (check,), {}, (), "", "", "", {})
 
 
 def shown(text):
-    """Return whether text has nothing in it that breaks a page, a terminal or a table."""
-    categories = [unicodedata.category(one) for one in text if one not in "\n\t"]
+    """Return whether a text contains nothing that breaks a page, a terminal or a table."""
+    categories = [unicodedata.category(character) for character in text if character not in "\n\t"]
     stacked = re.search("(?:[\u0300-\u036f\u20d0-\u20ff]){5}", unicodedata.normalize("NFD", text))
     return not stacked and not {"Cc", "Cf", "Cs", "Co"} & set(categories)
 
@@ -184,15 +188,14 @@ def test_printed_text_is_escaped_in_every_format(name, strict, tmp_path):
         except NoAnswer as error:
             message = str(error)
         assert shown(message) and shown(subject.printed)
-        each = gradebook.write_results(
+        paths = gradebook.write_results(
             tmp_path, result(message=message, said=subject.printed, kind="raised")
         )
-    told = {path.name: path.read_bytes().decode() for path in each}
-    assert (
-        "<script>alert" not in told["feedback.html"] and "<svg onload" not in told["feedback.html"]
-    )
-    assert shown(told["feedback.html"]) and json.loads(told["gradescope.json"])
-    ElementTree.fromstring(told["junit.xml"])
+    texts = {path.name: path.read_bytes().decode() for path in paths}
+    assert "<script>alert" not in texts["feedback.html"]
+    assert "<svg onload" not in texts["feedback.html"]
+    assert shown(texts["feedback.html"]) and json.loads(texts["gradescope.json"])
+    ElementTree.fromstring(texts["junit.xml"])
 
 
 @pytest.mark.parametrize("name", hostile_submissions.NASTY_TEXTS)
@@ -214,9 +217,8 @@ def test_an_error_while_writing_feedback_is_a_note_of_that_student(tmp_path, mon
     done = classroom.write_feedback(
         tmp_path, JobResult(GradingJob("b1", tmp_path, "key"), tmp_path / "b1.json")
     )
-    assert done.path and done.problem.startswith(
-        "its feedback could not be written: UnicodeEncodeError"
-    )
+    assert done.path
+    assert done.problem.startswith("its feedback could not be written: UnicodeEncodeError")
     (tmp_path / "b1.json").write_text("half a res")
     done = classroom.write_feedback(
         tmp_path, JobResult(GradingJob("b1", tmp_path, "key"), tmp_path / "b1.json")

@@ -39,9 +39,9 @@ HAT = re.compile(r"import numpy as np\n.*", re.DOTALL)
 
 
 def spent():
-    """Return what the processes that this one has waited for have used of a processor, in seconds."""
-    told = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return told.ru_utime + told.ru_stime
+    """Return the processor time of all child processes that have ended, in seconds."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 @pytest.mark.parametrize("name", hostile_submissions.UNREADABLE_FILES)
@@ -50,15 +50,15 @@ def test_reading_a_hostile_file_is_limited_in_time_and_reported(name, tmp_path):
     file = tmp_path / f"hat{ending}"
     file.write_bytes(made())
     before = spent()
-    found = reader.read(file, "hw2", ["hat"])
+    submission = reader.read(file, "hw2", ["hat"])
     assert spent() - before < reader.READING_CPU_SECONDS + 1.5
-    assert all(one.isprintable() and len(one) <= 300 for one in found.problems)
-    assert len(found.problems) <= reader.MAX_SHOWN_PROBLEMS + 1
-    assert found.sources or found.problems
-    assert not (name in LOST and found.sources)
-    if found.sources:  # the right function at the end, whatever stands before it
+    assert all(problem.isprintable() and len(problem) <= 300 for problem in submission.problems)
+    assert len(submission.problems) <= reader.MAX_SHOWN_PROBLEMS + 1
+    assert submission.sources or submission.problems
+    assert not (name in LOST and submission.sources)
+    if submission.sources:  # the right function is at the end of each file
         scope = {}
-        exec(HAT.search(found.sources["hat"])[0], scope)
+        exec(HAT.search(submission.sources["hat"])[0], scope)
         assert scope["hat"](3).tolist() == [0, 2, 0]
 
 
@@ -100,10 +100,10 @@ RIGHT = {  # an honest file, as its author's editor has saved it
 def test_an_unusual_but_valid_file_is_read_correctly(name, tmp_path):
     ending, data = RIGHT[name]
     (tmp_path / f"hw2{ending}").write_bytes(data)
-    found = reader.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
+    submission = reader.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
     scope = {}
-    exec(found.sources["hat"], scope)
-    assert scope["hat"](3).tolist() == [0, 2, 0] and not found.problems
+    exec(submission.sources["hat"], scope)
+    assert scope["hat"](3).tolist() == [0, 2, 0] and not submission.problems
 
 
 def test_an_archive_is_read_within_the_same_limits(tmp_path):
@@ -155,25 +155,24 @@ def test_an_odd_file_is_noted_and_does_not_affect_others(name, tmp_path):
     made(tmp_path / f"b1_hw2{ending}")
     (tmp_path / "b2_hw2.py").write_text(CORRECT_CODE)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
-    found = class_folder.find(tmp_path, ROSTER)
+    scan = class_folder.find(tmp_path, ROSTER)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
-    assert "b2" in found.submissions and all(
-        note.isprintable() and len(note) < 250 for note in found.notes
-    )
+    assert "b2" in scan.submissions
+    assert all(note.isprintable() and len(note) < 250 for note in scan.notes)
     if name in ("an empty file", "a notebook of 60 MB"):
-        read = reader.tasks_of(found.submissions["b1"].path, ["hat"])
+        read = reader.tasks_of(scan.submissions["b1"].path, ["hat"])
         assert "is empty" in read.problems[0] or "is larger than 50 MB" in read.problems[0]
     else:
-        assert "b1" not in found.submissions and found.refused["b1"] in found.notes
+        assert "b1" not in scan.submissions and scan.refused["b1"] in scan.notes
 
 
 def test_a_readable_file_counts_if_a_later_one_is_refused(tmp_path):
     (tmp_path / "b1_hw2.py").write_text(CORRECT_CODE)
     os.utime(tmp_path / "b1_hw2.py", (1, 1))
     hostile_submissions.make_sparse_file(tmp_path / "b1_later.ipynb")
-    found = class_folder.find(tmp_path, ROSTER)
-    assert found.submissions["b1"].path.name == "b1_hw2.py"
-    assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
+    scan = class_folder.find(tmp_path, ROSTER)
+    assert scan.submissions["b1"].path.name == "b1_hw2.py"
+    assert "b1_later.ipynb: expected at most 256 MB, got 204800" in scan.notes
 
 
 def test_a_modification_time_after_the_year_9999_is_noted(tmp_path, monkeypatch):

@@ -37,7 +37,8 @@ def test_every_inlined_task_needs_only_numpy_and_scipy(task):
 def test_inlined_code_computes_the_same_as_the_library():
     scope = {}
     exec(inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text, scope)
-    Z, B = np.random.default_rng(0).integers(0, 256, (80, 4)), np.log([1, 2, 4, 8])
+    Z = np.random.default_rng(0).integers(0, 256, (80, 4))
+    B = np.log([1, 2, 4, 8])
     for ours, copied in zip(
         debevec.gsolve(Z, B, 10, weights.hat()),
         scope["gsolve"](Z, B, 10, weights.hat()),
@@ -54,7 +55,7 @@ def test_shared_helpers_are_inlined_once():
 
 
 def test_definitions_with_the_same_name_are_kept_apart_by_module():
-    """Both operators are called tonemap, and each brings the types it needs."""
+    """Both operators are called tonemap, and each needs its own types."""
     both = inline.inlined({"photo": "tonemap.reinhard.tonemap", "slow": "tonemap.chiu.tonemap"})
     scope = {}
     exec("\n\n".join(block.text for block in both.values()), scope)
@@ -83,17 +84,14 @@ def test_a_solution_has_the_signature_of_its_assignment_without_types_and_guards
     ):  # as the sheet has constants
         by_value = by_value.replace(f"={name}", f"={value}")
     assert stubs.stub(task).splitlines()[0] in by_value
-    functions = [one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.FunctionDef)]
-    arguments = [
-        one for node in functions for one in ast.walk(node.args) if isinstance(one, ast.arg)
-    ]
-    assert not any(node.returns for node in functions) and not any(
-        one.annotation for one in arguments
-    )
-    inside = [one for node in functions for one in node.body]
-    assert not any(
-        isinstance(one, ast.If) and isinstance(one.body[-1], ast.Raise) for one in inside
-    )
+    functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
+    for function in functions:
+        assert not function.returns
+        for node in ast.walk(function.args):
+            assert not (isinstance(node, ast.arg) and node.annotation)
+        for statement in function.body:
+            is_guard = isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Raise)
+            assert not is_guard
     assert "require_" not in text and "# noqa" not in text and "hdrlab" not in text
 
 
@@ -106,12 +104,10 @@ def test_only_statements_that_just_raise_are_removed():
 
 
 def test_a_class_that_the_notebook_gives_is_not_inlined():
-    functions, given = (
-        {"gsolve": "response.debevec.gsolve"},
-        stubs.classes("response.debevec.gsolve"),
-    )
+    functions = {"gsolve": "response.debevec.gsolve"}
+    given_classes = stubs.classes("response.debevec.gsolve")
     assert "class Solution" in inline.inlined(functions)["gsolve"].text
-    assert "class Solution" not in inline.inlined(functions, given)["gsolve"].text
+    assert "class Solution" not in inline.inlined(functions, given_classes)["gsolve"].text
 
 
 def test_imports_from_one_module_are_merged_into_one_line():

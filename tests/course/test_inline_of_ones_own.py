@@ -1,4 +1,4 @@
-"""A user's own function with all that it needs: what is copied, renamed and left out."""
+"""A user's own function with everything that it needs: what is copied, renamed and omitted."""
 
 import pytest
 
@@ -104,16 +104,21 @@ def again2(x):
 
 @pytest.fixture
 def inlined(tmp_path):
-    """inlined({name: (file, text, function)}) -> the text of each, with what it needs."""
+    """inlined({name: (file, text, function)}) -> the text of each function with everything that it
+    needs.
+    """
 
-    def inlined(functions, given=()):
+    def inlined(functions, given_places=()):
         for file, text, _ in functions.values():
             (tmp_path / file).write_text(text, encoding="utf8")
-        asked = {
+        inlined_functions = {
             name: f"{tmp_path / file}:{function}" for name, (file, _, function) in functions.items()
         }
-        given = [f"{tmp_path / file}:{function}" for file, function in given]
-        return {name: block.text + "\n" for name, block in inline.inlined(asked, given).items()}
+        given_places = [f"{tmp_path / file}:{function}" for file, function in given_places]
+        return {
+            name: block.text + "\n"
+            for name, block in inline.inlined(inlined_functions, given_places).items()
+        }
 
     return inlined
 
@@ -121,30 +126,30 @@ def inlined(tmp_path):
 def test_a_function_is_inlined_with_comments_but_without_types_guards_and_long_docstrings(
     inlined,
 ):
-    found = inlined({"other": ("own.py", OWN, "main"), "again2": ("own.py", OWN, "again")})
-    assert found == {"other": FIRST, "again2": SECOND}
+    cells = inlined({"other": ("own.py", OWN, "main"), "again2": ("own.py", OWN, "again")})
+    assert cells == {"other": FIRST, "again2": SECOND}
 
 
 def test_given_definitions_are_not_inlined(inlined):
-    found = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])[
+    cells = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])[
         "main"
     ]
-    assert "class State" not in found and "WIDTH = 3" not in found and "TABLE = " in found
-    assert "def again(x):" in found and "def main(" in found
+    assert "class State" not in cells and "WIDTH = 3" not in cells and "TABLE = " in cells
+    assert "def again(x):" in cells and "def main(" in cells
 
 
 def test_helpers_with_the_same_name_are_renamed_by_file_and_identical_ones_shared(inlined):
     texts = {
         k: f"def helper():\n    return {k}\n\n\ndef main():\n    return helper()\n" for k in (1, 2)
     }
-    found = inlined(
+    cells = inlined(
         {
             "a": ("a.py", texts[1], "main"),
             "b": ("b.py", texts[2], "main"),
             "c": ("c.py", texts[1], "main"),
         }
     )
-    assert found == {
+    assert cells == {
         "a": "def helper():\n    return 1\n\ndef a():\n    return helper()\n",
         "b": "def helper_b():\n    return 2\n\ndef b():\n    return helper_b()\n",
         "c": "def c():\n    return helper()\n",
@@ -168,8 +173,8 @@ def test_renaming_changes_only_references_to_the_definition(inlined):
     text = 'def main(x, main=1):\n    """Return a main."""\n    return " main"\n'
     assert inlined({"a": ("a.py", text, "main")})["a"] == text.replace("def main", "def a")
     texts = {k: f'A = " A{k}"\n\n\ndef main():\n    return A\n' for k in (1, 2)}
-    found = inlined({"a": ("c.py", texts[1], "main"), "b": ("d.py", texts[2], "main")})
-    assert found["b"] == 'A_d = " A2"\n\ndef b():\n    return A_d\n'
+    cells = inlined({"a": ("c.py", texts[1], "main"), "b": ("d.py", texts[2], "main")})
+    assert cells["b"] == 'A_d = " A2"\n\ndef b():\n    return A_d\n'
 
 
 def test_nested_docstrings_keep_their_first_paragraph(inlined):
@@ -179,16 +184,17 @@ def test_nested_docstrings_keep_their_first_paragraph(inlined):
     more = "\n\n        More.\n        And more.\n        "
     whole = 'class main:\n    """Say main.{}"""\n\n{}\n{}'.format
     text = whole(more, method("a", more), method("b", more))
-    found = inlined({"main": ("a.py", text, "main")})["main"]
-    assert found == whole("", method("a", ""), method("b", ""))
+    text_found = inlined({"main": ("a.py", text, "main")})["main"]
+    assert text_found == whole("", method("a", ""), method("b", ""))
 
 
 def test_a_library_function_is_renamed_if_its_name_is_taken(
     inlined,
 ):
     text = "from hdrlab.core import weights\n\n\ndef main():\n    hat = weights.hat()\n    return hat\n"
-    found = inlined({"main": ("a.py", text, "main")})["main"]
-    assert "def hat_weights(" in found and "    hat = hat_weights()\n    return hat\n" in found
+    text_found = inlined({"main": ("a.py", text, "main")})["main"]
+    assert "def hat_weights(" in text_found
+    assert "    hat = hat_weights()\n    return hat\n" in text_found
     argument = text.replace("hat = weights.hat()", "f = lambda hat: hat + weights.hat()")
     assert "hat + hat_weights()" in inlined({"main": ("b.py", argument, "main")})["main"]
     other = text.replace("hat = ", "w = ").replace("return hat", "return w")
@@ -238,13 +244,14 @@ LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
     ],
 )
 def test_annotations_and_guards_are_stripped(text, board):
-    found = library_source.strip_annotations(text)
+    text_found = library_source.strip_annotations(text)
     if text.startswith(f"def f({LONG}"):
-        lines = found.splitlines()
+        lines = text_found.splitlines()
         assert lines[0] == "def f(" and lines[-2:] == ["):", "    return 1"]
-        assert " ".join(one.strip() for one in lines[1:-2]) == LONG and max(map(len, lines)) <= 110
+        assert " ".join(line.strip() for line in lines[1:-2]) == LONG
+        assert max(map(len, lines)) <= 110
     else:
-        assert found == (text if board is None else board) + "\n"
+        assert text_found == (text if board is None else board) + "\n"
 
 
 def test_a_signature_of_110_characters_stays_on_one_line():

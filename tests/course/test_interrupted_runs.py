@@ -33,12 +33,13 @@ test_interrupted_runs.graded(Path({folder!r}))
 
 
 def graded(home, work=cluster_jobs.grade_quickly, again=False):
-    """Grade the class of a folder, and return what was done and what the results are."""
-    folder, wanted = home / "results", cluster_jobs.make_jobs(home / "class")
+    """Grade the class in a folder, and return the job results and the result files."""
+    folder = home / "results"
+    grading_jobs = cluster_jobs.make_jobs(home / "class")
     if again:
-        jobs.delete_results(folder, wanted)
+        jobs.delete_results(folder, grading_jobs)
     with jobs.lock_folder(folder):
-        done, rest = jobs.split_finished(folder, wanted)
+        done, rest = jobs.split_finished(folder, grading_jobs)
         with processes.Processes(work, 2) as executor:
             done += jobs.run_jobs(rest, executor, folder)
     return done, {path.name: path.read_bytes() for path in sorted(folder.glob("*.json"))}
@@ -47,11 +48,9 @@ def graded(home, work=cluster_jobs.grade_quickly, again=False):
 def test_nothing_is_graded_twice(tmp_path):
     first, results = graded(tmp_path)
     again, same = graded(tmp_path)
-    assert (
-        all(one.is_new for one in first)
-        and not any(one.is_new for one in again)
-        and results == same
-    )
+    assert all(result.is_new for result in first)
+    assert not any(result.is_new for result in again)
+    assert results == same
     assert len(cluster_jobs.read_started_jobs(tmp_path / "class")) == len(results) == 5
 
 
@@ -59,15 +58,16 @@ def test_only_changed_submissions_are_graded_again(tmp_path):
     graded(tmp_path)
     (tmp_path / "class" / "s4.py").write_text(f"{tmp_path / 'class' / 'begun'}\nother")
     again, results = graded(tmp_path)
-    assert [one.job.owner for one in again if one.is_new] == ["s4"] and len(results) == 5
-    assert sum(one.is_new for one in graded(tmp_path, again=True)[0]) == 5
+    assert [result.job.owner for result in again if result.is_new] == ["s4"] and len(results) == 5
+    assert sum(result.is_new for result in graded(tmp_path, again=True)[0]) == 5
 
 
 class AtOnce:
-    """An executor that does a piece in a process that is there already, and after it something else."""
+    """An executor that runs a job in this process, and then calls a function."""
 
     def __init__(self, after):
-        self.after, self.ended = after, []
+        self.after = after
+        self.ended = []
 
     def start(self, job, *, alone=False):
         self.ended.append(jobs.JobAttempt(job, b"{}"))
@@ -81,9 +81,10 @@ class AtOnce:
 
 @pytest.mark.quick
 def test_an_old_result_that_is_removed_meanwhile_is_no_error(tmp_path):
-    former, *pieces = (jobs.GradingJob("s0", tmp_path, key) for key in ("old", "new"))
-    jobs.write_private_file(old := jobs.result_path(tmp_path, former), b"{}")
-    (done,) = jobs.run_jobs(pieces, AtOnce(old.unlink), tmp_path)
+    old = jobs.result_path(tmp_path, jobs.GradingJob("s0", tmp_path, "old"))
+    jobs.write_private_file(old, b"{}")
+    new_jobs = [jobs.GradingJob("s0", tmp_path, "new")]
+    (done,) = jobs.run_jobs(new_jobs, AtOnce(old.unlink), tmp_path)
     assert list(tmp_path.iterdir()) == [done.path] and done.is_new
 
 
@@ -91,26 +92,24 @@ def test_a_submission_that_kills_its_process_is_reported_and_others_are_graded(t
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
     done, results = graded(tmp_path, cluster_jobs.grade_and_kill_self)
-    lost = [one for one in done if one.path is None]
-    assert (
-        [one.job.owner for one in lost] == ["s3"]
-        and "3 times" in lost[0].problem
-        and "(-9)" in lost[0].problem
-    )
+    lost = [result for result in done if result.path is None]
+    assert [result.job.owner for result in lost] == ["s3"]
+    assert "3 times" in lost[0].problem
+    assert "(-9)" in lost[0].problem
     assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
 
 
 def test_an_endless_submission_is_stopped(tmp_path):
-    one = cluster_jobs.make_jobs(tmp_path / "class", 1)
+    one_job = cluster_jobs.make_jobs(tmp_path / "class", 1)
     with processes.Processes(cluster_jobs.never_finish, 1, timeout=0.5) as executor:
-        (done,) = jobs.run_jobs(one, executor, tmp_path / "results")
+        (done,) = jobs.run_jobs(one_job, executor, tmp_path / "results")
     assert done.path is None and "too long" in done.problem
     assert list((tmp_path / "results").iterdir()) == []
 
 
 def test_an_error_of_a_job_is_reported_in_one_line(tmp_path):
     done, results = graded(tmp_path, cluster_jobs.raise_error)
-    assert {one.problem for one in done} == {
+    assert {result.problem for result in done} == {
         "it ended 3 times without a result: ValueError: expected this, got that"
     }
     assert not results
@@ -134,8 +133,8 @@ def test_an_interrupted_run_stops_its_jobs(tmp_path):
         pytest.raises(KeyboardInterrupt),
         processes.Processes(cluster_jobs.never_finish, 2) as executor,
     ):
-        for one in cluster_jobs.make_jobs(tmp_path / "class", 2):
-            assert executor.start(one)
+        for job in cluster_jobs.make_jobs(tmp_path / "class", 2):
+            assert executor.start(job)
         while len(cluster_jobs.read_started_jobs(tmp_path / "class")) < 2:
             assert not executor.wait_for_attempts()
         raise KeyboardInterrupt
@@ -148,14 +147,15 @@ def test_an_interrupted_run_stops_its_jobs(tmp_path):
 def test_the_next_run_finishes_a_killed_run(tmp_path):
     (tmp_path / "whole").mkdir()
     _, whole = graded(tmp_path / "whole")
-    rng, home = random.Random(5), tmp_path / "killed"
+    rng = random.Random(5)
+    home = tmp_path / "killed"
     home.mkdir()
     script = RUN.format(tests=str(Path(__file__).parents[1]), folder=str(home))
     for kill in range(4):
         run = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
         time.sleep(rng.uniform(0.3, 2.0))
         if kill % 2:
-            run.kill()  # the run alone: what it started may write its result or not
+            run.kill()  # only the run; its child processes may still write results
             run.wait()
             time.sleep(0.3)
         with suppress(ProcessLookupError):  # nothing of it is left
@@ -163,7 +163,7 @@ def test_the_next_run_finishes_a_killed_run(tmp_path):
         run.wait()
     done, results = graded(home)
     assert results == whole
-    assert len(done) == 5 and all(one.path for one in done)
+    assert len(done) == 5 and all(result.path for result in done)
 
 
 def test_files_are_matched_with_their_owners(tmp_path):
@@ -183,11 +183,11 @@ def test_files_are_matched_with_their_owners(tmp_path):
     (tmp_path / "b3" / "link.py").symlink_to("/etc/passwd")
     noon = datetime(2026, 3, 1, 12, tzinfo=UTC)
     times = {"B2_hw2.ipynb": noon, "team1-late.ipynb": noon + timedelta(hours=1)}
-    found = class_folder.find(tmp_path, roster, times)
-    assert {team: one.path.name for team, one in found.submissions.items()} == {
+    scan = class_folder.find(tmp_path, roster, times)
+    assert {team: submission.path.name for team, submission in scan.submissions.items()} == {
         "team1": "team1-late.ipynb",
         "b12": "b12.py",
         "b3": "hw2.ipynb",
     }
-    assert found.submissions["team1"].students == ("b1", "b2")
-    assert len(found.notes) == 6 and any("B2_hw2" in note for note in found.notes)
+    assert scan.submissions["team1"].students == ("b1", "b2")
+    assert len(scan.notes) == 6 and any("B2_hw2" in note for note in scan.notes)

@@ -127,7 +127,8 @@ def test_a_name_with_a_dot_has_its_own_results(tmp_path):
 
 
 def test_jobs_with_a_result_are_finished_until_it_is_deleted(tmp_path):
-    first, second = both = make_jobs("a", "b")
+    both = make_jobs("a", "b")
+    first, second = both
     jobs.write_private_file(jobs.result_path(tmp_path, second), b"x")
     finished, unfinished = jobs.split_finished(tmp_path, both)
     assert finished == [JobResult(second, tmp_path / "b.k.json", is_new=False)]

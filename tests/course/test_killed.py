@@ -41,7 +41,7 @@ LETHAL = "import os\n\ndef hat(n=256):\n    os._exit(0)\n"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Make a class of four: a good one, a wrong one, one that ends its process, and an archive."""
+    """Make a class of four: a right submission, a wrong one, one that ends its process, and an archive."""
     home = tmp_path_factory.mktemp("class")
     (home / "in").mkdir()
     (home / "checks").mkdir()
@@ -79,7 +79,7 @@ def begin(home, out, *more):
 
 
 def contents(folder):
-    """Return the bytes of every file of a folder but its lock, which holds no result."""
+    """Return the bytes of all files of a folder, except for its lock."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in folder.rglob("*")
@@ -88,39 +88,41 @@ def contents(folder):
 
 
 def different(some, other):
-    """Return the files that differ, each with its first line that does, in both folders."""
-    found = {}
+    """Return the files that differ, each with the first line that differs in both folders."""
+    differences = {}
     for name in sorted({*some, *other}):
         if some.get(name) != other.get(name):
-            both = [each.get(name, b"(no file)").splitlines() for each in (some, other)]
-            found[name] = next(
+            both = [files.get(name, b"(no file)").splitlines() for files in (some, other)]
+            differences[name] = next(
                 filter(lambda pair: len({*pair}) > 1, zip_longest(*both)), "the last byte"
             )
-    return found
+    return differences
 
 
 def finished(home, out):
-    """Run to the end, and return what is there."""
+    """Run to the end, and return the files."""
     run = begin(home, out)
-    said = run.communicate(timeout=1800)[1].decode()
-    assert run.returncode == 0 and "warning" not in said, said
+    output = run.communicate(timeout=1800)[1].decode()
+    assert run.returncode == 0 and "warning" not in output, output
     return contents(out)
 
 
 def family(pid):
-    """Return the processes that have come from this one."""
+    """Return a process and all its descendants."""
     parents = {
-        one: int(said.rpartition(b")")[2].split()[1])
-        for one, said in linux_processes.read_proc_files("stat").items()
+        process: int(stat.rpartition(b")")[2].split()[1])
+        for process, stat in linux_processes.read_proc_files("stat").items()
     }
-    found = [pid]
-    for one in found:
-        found += [child for child, parent in parents.items() if parent == one]
-    return found[1:]
+    family = [pid]
+    for process in family:
+        family += [child for child, parent in parents.items() if parent == process]
+    return family[1:]
 
 
 def besieged(run, rng, most, others=list):
-    """Kill the run, or one that it has started, or one of the others, until it ends; return how often."""
+    """Kill the run, or one of its child processes or of the others, until it ends; return the number of
+    kills.
+    """
     kills = 0
     while kills < most:
         with suppress(subprocess.TimeoutExpired):
@@ -136,24 +138,26 @@ def besieged(run, rng, most, others=list):
 
 
 def graded(home, out, rng, most, *more, others=list):
-    """Run, besieged, again and again until all are graded; return what is there, and the number of kills."""
-    kills, told = 0, "warning"
-    while "warning" in told:  # of one that was killed three times: the next run grades it
+    """Run and kill again and again until all are graded; return the files and the number of kills."""
+    kills = 0
+    missing = "warning"
+    while "warning" in missing:  # of one that was killed three times: the next run grades it
         run = begin(home, out, *more)
         now = besieged(run, rng, most - kills, others)
-        told = run.communicate(timeout=1800)[1].decode()
+        missing = run.communicate(timeout=1800)[1].decode()
         stopped = (
-            now >= doctor.MAX_ATTEMPTS and "sandbox did not start: it was ended by signal 9" in told
+            now >= doctor.MAX_ATTEMPTS
+            and "sandbox did not start: it was ended by signal 9" in missing
         )
-        assert run.returncode in (0, -signal.SIGKILL) or stopped, told
+        assert run.returncode in (0, -signal.SIGKILL) or stopped, missing
         kills += now
-        told = "warning" if run.returncode else told
+        missing = "warning" if run.returncode else missing
     return contents(out), kills
 
 
 @pytest.fixture(scope="module")
 def whole(folder):
-    """Return what a run leaves that nobody has killed."""
+    """Return the files of a run that was not killed."""
     return finished(folder, folder / "whole")
 
 
@@ -166,7 +170,9 @@ PROC = pytest.mark.skipif(
 def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(folder, whole):
     assert sum(name.startswith(("results/", "feedback/")) for name in whole) == 4 * 6
     assert {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"} <= set(whole)
-    rng, kills, rounds = random.Random(9), 0, 0
+    rng = random.Random(9)
+    kills = 0
+    rounds = 0
     while kills < 20:
         rounds += 1
         results, more = graded(folder, folder / f"round{rounds}", rng, 20 - kills)
@@ -191,15 +197,19 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole):
 
 
 def workers():
-    """Return the processes of a cluster that this one has started, and what they have started."""
-    said = linux_processes.read_proc_files("cmdline")
-    spawned = [child for child in family(os.getpid()) if b"spawn_main" in said.get(child, b"")]
-    return [one for child in spawned for one in (child, *family(child))]
+    """Return the processes of a cluster that this process has started, and their child processes."""
+    command_lines = linux_processes.read_proc_files("cmdline")
+    spawned = [
+        child for child in family(os.getpid()) if b"spawn_main" in command_lines.get(child, b"")
+    ]
+    return [process for child in spawned for process in (child, *family(child))]
 
 
 @pytest.fixture
 def killing():
-    """Return what kills the first process to come of this one whose command has some words, in a thread."""
+    """killing(*words) starts a thread that kills the first new child process whose command has these
+    words.
+    """
     threads = []
 
     def begin(*words, below=False):
@@ -207,17 +217,17 @@ def killing():
         threads[-1].start()
 
     yield begin
-    for one in threads:
-        one.join()
+    for thread in threads:
+        thread.join()
 
 
 def _kill(words, below):
     until = time.monotonic() + 300
     while time.monotonic() < until:
-        said = linux_processes.read_proc_files("cmdline")
-        for one in family(os.getpid()):
-            victims = family(one) if below else [one]
-            if victims and all(word in said.get(one, b"") for word in words):
+        command_lines = linux_processes.read_proc_files("cmdline")
+        for process in family(os.getpid()):
+            victims = family(process) if below else [process]
+            if victims and all(word in command_lines.get(process, b"") for word in words):
                 with suppress(ProcessLookupError):
                     return os.kill(victims[0], signal.SIGKILL)
         time.sleep(0.01)
@@ -244,7 +254,7 @@ def test_a_function_whose_process_something_kills_is_graded_again(tmp_path, kill
     class_grader = classroom.Grader(HAT, GradingOptions(tier="practice"))
     killing(b"supervisor.py", below=True)
     once = grader.grade(job.path, HAT, class_grader.conditions)
-    assert "no answer" in {one.outcome for one in once.checks}
+    assert "no answer" in {check.outcome for check in once.checks}
     killing(b"supervisor.py", below=True)
     result = results.from_json(class_grader.grade(job))
-    assert {one.outcome for one in result.checks} == {"holds"}
+    assert {check.outcome for check in result.checks} == {"holds"}

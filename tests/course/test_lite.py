@@ -63,7 +63,7 @@ def test_a_wheel_whose_content_changes_has_another_digest_and_otherwise_the_same
 
 
 def write_pyodide(folder, version="0.27.7", **changes):
-    """Write a folder that has the files of Pyodide, with a package that needs another one."""
+    """Write a folder with the files of Pyodide, of which one package needs another."""
     packages = {
         "numpy": {"file_name": "numpy.whl", "depends": ["Open_Blas"]},
         "open-blas": {"file_name": "blas.zip", "depends": []},
@@ -90,8 +90,8 @@ def test_a_folder_without_pyodide_or_with_another_version_is_refused_with_a_mess
 
 
 def test_pyodide_may_be_at_an_address():
-    found = build.find_pyodide(ADDRESS)
-    assert (found.url, found.folder) == (f"{ADDRESS}/pyodide.js", None)
+    pyodide = build.find_pyodide(ADDRESS)
+    assert (pyodide.url, pyodide.folder) == (f"{ADDRESS}/pyodide.js", None)
 
 
 @pytest.mark.notebooks

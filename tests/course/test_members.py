@@ -149,7 +149,7 @@ def test_a_member_must_have_exactly_the_size_that_it_claims(size, tmp_path):
 
 
 class Endless(io.RawIOBase):
-    """What never ends, and counts what was read of it."""
+    """A stream that never ends, and counts the bytes that were read."""
 
     taken = 0
 
@@ -181,9 +181,10 @@ def test_a_packed_zip_is_reproducible_and_keeps_executable_bits():
     whole = make_zip(files, ["run"])
     assert whole == make_zip(dict(reversed(files.items())), ("run",))
     with zipfile.ZipFile(io.BytesIO(whole)) as opened:
-        told = [
-            (one.filename, one.external_attr >> 16, one.compress_type) for one in opened.infolist()
+        listings = [
+            (entry.filename, entry.external_attr >> 16, entry.compress_type)
+            for entry in opened.infolist()
         ]
-        assert {one.date_time for one in opened.infolist()} == {(1980, 1, 1, 0, 0, 0)}
-        assert {one.filename: opened.read(one) for one in opened.infolist()} == files
-    assert told == [("a.txt", 0o100644, 8), ("b.PNG", 0o100644, 0), ("run", 0o100755, 8)]
+        assert {entry.date_time for entry in opened.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        assert {entry.filename: opened.read(entry) for entry in opened.infolist()} == files
+    assert listings == [("a.txt", 0o100644, 8), ("b.PNG", 0o100644, 0), ("run", 0o100755, 8)]

@@ -109,16 +109,17 @@ def test_a_moodle_worksheet_keeps_its_columns_and_gets_the_scores(write, tmp_pat
 def test_each_team_member_gets_the_feedback_page_in_moodles_archive(write, tmp_path):
     write()
     with zipfile.ZipFile(tmp_path / "moodle_feedback.zip") as archive:
-        found = {importer(name): archive.read(name) for name in archive.namelist()}
-    kind, page = "assignsubmission_file", b"<p>of t"
-    assert found == {(4711, kind, "feedback.html"): page, (4712, kind, "feedback.html"): page}
+        files = {importer(name): archive.read(name) for name in archive.namelist()}
+    kind = "assignsubmission_file"
+    page = b"<p>of t"
+    assert files == {(4711, kind, "feedback.html"): page, (4712, kind, "feedback.html"): page}
 
 
 def test_students_missing_from_the_roster_are_reported_and_names_in_student_text_are_ignored(
     write,
 ):
-    (said,) = write()
-    assert "sheet.csv" in said and "'Eve'" in said
+    (warning,) = write()
+    assert "sheet.csv" in warning and "'Eve'" in warning
 
 
 def test_a_worksheet_with_other_points_or_other_columns_is_refused(write):

@@ -31,9 +31,8 @@ from hdrlab.course.source_code.library_source import SymbolRef
 )
 def test_names_that_a_statement_binds_and_uses(text, bound, free):
     (node,) = ast.parse(text).body
-    assert (
-        names.bound_names(node) == bound and [use.node.id for use in names.free_names(node)] == free
-    )
+    assert names.bound_names(node) == bound
+    assert [use.node.id for use in names.free_names(node)] == free
 
 
 def test_imported_parts_of_numpy_and_scipy_are_named_once():
@@ -51,7 +50,5 @@ def test_places_are_written_as_they_are_read():
         ("response.debevec.gsolve", SymbolRef("hdrlab.response.debevec", "gsolve")),
         ("/a/v.py:vignette", SymbolRef("/a/v.py", "vignette")),
     ):
-        assert (
-            library_source.parse_reference(text) == key
-            and library_source.format_reference(key) == text
-        )
+        assert library_source.parse_reference(text) == key
+        assert library_source.format_reference(key) == text

@@ -15,9 +15,9 @@ from hdrlab.course.sandbox.subprocess_runner import LIBRARY
 
 
 def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_path):
-    files = sorted(one for one in LIBRARY.rglob("*.*") if one.suffix in (".py", ".toml"))
+    files = sorted(path for path in LIBRARY.rglob("*.*") if path.suffix in (".py", ".toml"))
     assert cluster.version().endswith(f"({grader.specification(files)[:8]})")
-    assert any(one.suffix == ".toml" for one in files)
+    assert any(path.suffix == ".toml" for path in files)
 
 
 @pytest.mark.parametrize("fails", [False, True])

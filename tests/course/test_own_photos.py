@@ -1,4 +1,4 @@
-"""A reader's own photos: what the browser's Python answers. It runs here without a browser.
+"""A reader's own photos: the answers of the browser's Python, run here without a browser.
 
 `tests/wasm/test_photos_in_chromium.py` drops photos on the page.
 """
@@ -55,7 +55,7 @@ def files(taken, tmp_path_factory):
 
 @pytest.fixture
 def own(tmp_path):
-    """The photos of a reader, none yet."""
+    """The photos of a reader, none at first."""
     return own_photos.OwnPhotos(tmp_path / "own")
 
 

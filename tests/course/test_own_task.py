@@ -56,7 +56,7 @@ def test_a_second_task_joins_the_first_and_a_third_begins_another_homework(folde
     read = plan.read(folder / "plan.toml")
     homeworks = read.homeworks
     assert read.late == plan.read().late
-    assert [[task.id for task in one.tasks] for one in homeworks.values()] == [
+    assert [[task.id for task in homework_read.tasks] for homework_read in homeworks.values()] == [
         ["flat_field", "dark"],
         ["white"],
     ]
@@ -79,26 +79,26 @@ def test_the_assignment_of_an_own_task_has_its_stub_text_points_and_checks(
     assert made == [out / "extra.ipynb", checks / "plan.toml", checks / "test_flat_field.py"]
     cells = ["".join(cell["source"]) for cell in json.loads(made[0].read_text())["cells"]]
     assert any(cell.startswith("def flat_field(Z, flat):") for cell in cells)
-    (given,) = [cell for cell in cells if "use_plan(" in cell]
-    assert given.endswith('use_plan("extra", plan="extra-checks/plan.toml", flat_field=10)')
+    (plan_cell,) = [cell for cell in cells if "use_plan(" in cell]
+    assert plan_cell.endswith('use_plan("extra", plan="extra-checks/plan.toml", flat_field=10)')
     monkeypatch.setattr(notebook, "_planned", {})
     monkeypatch.chdir(out)
-    exec(given[given.index("use_plan(") :], {"use_plan": notebook.use_plan})
+    exec(plan_cell[plan_cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
     homework, tasks = notebook.find_tasks("flat_field")
-    assert tasks == ["flat_field"] and grader.files_of(homework, None) == [
-        checks / "test_flat_field.py"
-    ]
+    assert tasks == ["flat_field"]
+    assert grader.files_of(homework, None) == [checks / "test_flat_field.py"]
 
 
 @pytest.mark.grading
 def test_an_own_task_is_graded_with_its_mistakes_hidden_checks_and_point_limit(folder, tmp_path):
     (tmp_path / "extra.py").write_text(WRONG)
     conditions = GradingOptions("practice", hidden=folder / "hidden")
-    found = grader.grade(tmp_path / "extra.py", extra(folder), conditions)
+    report = grader.grade(tmp_path / "extra.py", extra(folder), conditions)
     (task,) = extra(folder).tasks
-    says = {one.name: one.sentence for one in misconceptions.of_task(task)}
-    assert found.misconceptions == {"flat_field": says["flat_field_mean_forgotten"]}
-    assert 5 <= found.score < 10 and [one.hidden for one in found.checks] == [False] * 3 + [True]
+    says = {check.name: check.sentence for check in misconceptions.of_task(task)}
+    assert report.misconceptions == {"flat_field": says["flat_field_mean_forgotten"]}
+    assert 5 <= report.score < 10
+    assert [check.hidden for check in report.checks] == [False] * 3 + [True]
 
 
 @pytest.mark.parametrize(("marks", "points"), [((), "1"), ((3,), "3"), ((0.5,), "1/2")])
@@ -119,9 +119,9 @@ def test_a_task_without_solution_and_mistakes_still_reports_failed_checks(folder
     (task,) = extra(folder).tasks
     task.own.unlink()
     (tmp_path / "extra.py").write_text(WRONG)
-    found = grader.grade(tmp_path / "extra.py", extra(folder), GradingOptions("practice"))
-    assert found.misconceptions == {} and found.score < 10
-    assert any("the corrected wall: expected" in one.message for one in found.checks)
+    report = grader.grade(tmp_path / "extra.py", extra(folder), GradingOptions("practice"))
+    assert report.misconceptions == {} and report.score < 10
+    assert any("the corrected wall: expected" in check.message for check in report.checks)
 
 
 def test_gradescope_gets_the_task_its_checks_and_its_mistakes(folder, tmp_path):
@@ -131,9 +131,8 @@ def test_gradescope_gets_the_task_its_checks_and_its_mistakes(folder, tmp_path):
         tmp_path / "source", ["plan.toml", "flat_field.py", "test_flat_field.py"]
     )
     held = zipfile.ZipFile(file).namelist()
-    assert "mistakes/flat_field_multiplied.py" in held and not any(
-        one.startswith("hidden/") for one in held
-    )
+    assert "mistakes/flat_field_multiplied.py" in held
+    assert not any(name.startswith("hidden/") for name in held)
     assert grader.files_of(extra(tmp_path / "source"), None)[0].is_file()
 
 

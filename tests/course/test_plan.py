@@ -14,7 +14,7 @@ TASK = 'id = "gsolve", function = "response.debevec.gsolve"'
 
 @pytest.fixture
 def read(tmp_path):
-    """read(...) -> the plan of a homework with these lines, tasks and whatever stands before it."""
+    """read(...) -> the plan of a homework with these lines and tasks, and any text before it."""
 
     def read(lines="", tasks=f"{{ {TASK}, points = 7.5 }}", before="", due="2026-10-01T12:00:00Z"):
         text = f'{before}\n[hw9]\ntitle = "Curves"\ndue = {due}\n{lines}\ntasks = [{tasks}]\n'
@@ -30,10 +30,8 @@ def test_grading_is_strict_and_lateness_costs_nothing_by_default():
 
 
 def test_a_task_is_named_after_its_function_and_an_own_task_has_a_file(tmp_path):
-    library, own = (
-        Task("a", "response.debevec.gsolve", 1),
-        Task("a", f"{tmp_path}/v.1.py:vignette", 1),
-    )
+    library = Task("a", "response.debevec.gsolve", 1)
+    own = Task("a", f"{tmp_path}/v.1.py:vignette", 1)
     assert (library.name, library.own) == ("gsolve", None)
     assert (own.name, own.own) == ("vignette", tmp_path / "v.1.py")
     assert Task("a", "plain", 1).name == "plain"
@@ -54,8 +52,8 @@ def test_a_solution_comes_from_the_library_a_variant_or_the_own_task(tmp_path):
 
 
 def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
-    found = read(tasks=f"{{ {TASK}, points = 2, minimum = true }}").homeworks["hw9"]
-    assert found.tasks == (Task("gsolve", "response.debevec.gsolve", 2.0, True),)
+    homework_read = read(tasks=f"{{ {TASK}, points = 2, minimum = true }}").homeworks["hw9"]
+    assert homework_read.tasks == (Task("gsolve", "response.debevec.gsolve", 2.0, True),)
     assert (
         not read(tasks=f"{{ {TASK}, points = 2, minimum = 1 }}").homeworks["hw9"].tasks[0].minimum
     )
@@ -92,7 +90,7 @@ def test_an_own_function_must_be_in_a_file_next_to_the_plan(function, taken, rea
 
 
 @pytest.mark.parametrize(
-    ("points", "by_hand", "said"),
+    ("points", "by_hand", "message"),
     [
         ("0", "", ""),
         ("0.5", "0", ""),
@@ -103,17 +101,17 @@ def test_an_own_function_must_be_in_a_file_next_to_the_plan(function, taken, rea
         ("1", "inf", "of 0 points or more each"),
     ],
 )
-def test_points_are_not_negative_and_not_all_zero(points, by_hand, said, read):
+def test_points_are_not_negative_and_not_all_zero(points, by_hand, message, read):
     lines = (
         f"by_hand = [{{ title = 'T', points = {by_hand}, rubric = ['a', 1] }}]" if by_hand else ""
     )
-    if said:
-        with pytest.raises(ValueError, match=said):
+    if message:
+        with pytest.raises(ValueError, match=message):
             read(lines, f"{{ {TASK}, points = {points} }}")
     else:
-        found = read(lines, f"{{ {TASK}, points = {points} }}").homeworks["hw9"]
-        assert found.points == float(points)
-        assert found.by_hand == ((ManualTask("T", 0.0, ("a", "1")),) if by_hand else ())
+        homework_read = read(lines, f"{{ {TASK}, points = {points} }}").homeworks["hw9"]
+        assert homework_read.points == float(points)
+        assert homework_read.by_hand == ((ManualTask("T", 0.0, ("a", "1")),) if by_hand else ())
 
 
 @pytest.mark.parametrize(
@@ -160,10 +158,10 @@ def test_a_due_date_has_a_time_and_a_zone(due, read):
 
 
 def test_a_task_occurs_in_one_homework_only_and_is_found_by_its_id(read):
-    found = read()
-    assert found.task("gsolve").points == 7.5
+    plan_read = read()
+    assert plan_read.task("gsolve").points == 7.5
     with pytest.raises(KeyError, match="task out of gsolve.*'merge'"):
-        found.task("merge")
+        plan_read.task("merge")
     with pytest.raises(ValueError, match="gsolve"):
         read(tasks=f"{{ {TASK}, points = 1 }}, {{ {TASK}, points = 2 }}")
     with pytest.raises(ValueError, match="expected tasks"):

@@ -51,13 +51,13 @@ def test_the_student_is_found_by_the_name_that_the_platform_gives(name, team, tm
     ],
 )
 def test_a_name_in_the_students_own_part_of_the_name_does_not_count(name, tmp_path):
-    found = find(tmp_path, name)
-    assert found.submissions == {} and "no student" in found.notes[0]
+    scan = find(tmp_path, name)
+    assert scan.submissions == {} and "no student" in scan.notes[0]
 
 
 def test_a_file_that_may_belong_to_two_students_is_assigned_to_neither(tmp_path):
-    found = find(tmp_path, "weili_1_2_hw2.ipynb")
-    assert found.submissions == {} and "b4 or b5" in found.notes[0]
+    scan = find(tmp_path, "weili_1_2_hw2.ipynb")
+    assert scan.submissions == {} and "b4 or b5" in scan.notes[0]
 
 
 def test_the_number_in_the_worksheet_distinguishes_students_of_the_same_name(tmp_path):

@@ -23,21 +23,24 @@ ANSWER = {
 
 @pytest.fixture
 def tried(monkeypatch):
-    """tried(endings...) -> the knobs of each try to read in a process of its own, which ends so."""
+    """tried(endings...) -> the calls of the attempts to read in a separate process, which end like
+    this.
+    """
 
     def tried(*endings):
-        left, asked = list(endings), []
+        left = list(endings)
+        calls = []
 
         def run(work, order, *, timeout, limits):
             assert Path(order[1]).is_dir()
-            asked.append((order[0], *order[2:], timeout, limits))
+            calls.append((order[0], *order[2:], timeout, limits))
             end = left.pop(0)
             if isinstance(end, Exception):
                 raise end
             return json.dumps(end).encode()
 
         monkeypatch.setattr(subprocess_runner, "run", run)
-        return asked
+        return calls
 
     return tried
 
@@ -51,28 +54,31 @@ def failed(own=False, killed=False):
 
 @pytest.mark.parametrize("name", ["a.ipynb", "a.py", "a.zip.txt"])
 def test_a_file_is_read_in_a_process_with_limited_time_and_memory(name, tried):
-    asked = tried(ANSWER)
-    found = reader.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
-    assert found == SubmittedCode({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
-    ((*order, timeout, limits),) = asked
+    calls = tried(ANSWER)
+    submission = reader.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
+    assert submission == SubmittedCode(
+        {"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"}
+    )
+    ((*order, timeout, limits),) = calls
     assert order == [Path(name), "hw2", ("f", "g"), (Cell("x = 1"),)]
     assert 0 < limits["CPU"] < timeout and 0 < limits["AS"] < 2**30
 
 
 @pytest.mark.parametrize("name", ["a.zip", "a.tar.GZ", "a.tgz"])
 def test_reading_an_archive_may_take_more_processor_time_than_a_notebook(name, tried):
-    asked = tried(ANSWER, ANSWER)
+    calls = tried(ANSWER, ANSWER)
     reader.read(Path("a.ipynb"), "hw2", ["f"])
     reader.read(Path(name), "hw2", ["f"])
-    notebook, archive = [limits["CPU"] for *_, limits in asked]
-    assert archive > notebook
+    notebook_limits = calls[0][-1]
+    archive_limits = calls[1][-1]
+    assert archive_limits["CPU"] > notebook_limits["CPU"]
 
 
 def test_a_file_that_exceeds_the_limits_is_reported_and_not_tried_again(tried):
-    asked = tried(failed(own=True))
-    found = reader.read(Path("a.zip"), "hw2", [])
-    (problem,) = found.problems
-    assert problem.startswith("a.zip") and found.sources == {} and len(asked) == 1
+    calls = tried(failed(own=True))
+    submission = reader.read(Path("a.zip"), "hw2", [])
+    (problem,) = submission.problems
+    assert problem.startswith("a.zip") and submission.sources == {} and len(calls) == 1
 
 
 @pytest.mark.parametrize(
@@ -88,33 +94,33 @@ def test_a_file_that_exceeds_the_limits_is_reported_and_not_tried_again(tried):
 def test_reading_is_tried_three_times_if_something_kills_it_and_once_if_it_fails(
     endings, tries, read, tried
 ):
-    asked = tried(*endings)
+    calls = tried(*endings)
     if read:
         assert reader.read(Path("a.py"), "hw2", []).hash == "digest"
     else:
         with pytest.raises(ValueError, match="it was ended"):
             reader.read(Path("a.py"), "hw2", [])
-    assert len(asked) == tries
+    assert len(calls) == tries
 
 
 def test_the_notebook_in_an_archive_is_read(tmp_path):
     text = "import numpy as np\nfrom scipy import ndimage\ndef f():\n    return np.pi, ndimage\n"
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
         opened.writestr("in/hw2.py", text)
-    found = reader.read(tmp_path / "a.zip", "hw2", ["f"])
-    assert found.sources["f"].endswith("return np.pi, ndimage\n")
-    assert found.problems == () and found.variants is None
-    assert found.modules == ("numpy", "scipy", "scipy.ndimage") and len(found.hash) == 64
+    submission = reader.read(tmp_path / "a.zip", "hw2", ["f"])
+    assert submission.sources["f"].endswith("return np.pi, ndimage\n")
+    assert submission.problems == () and submission.variants is None
+    assert submission.modules == ("numpy", "scipy", "scipy.ndimage") and len(submission.hash) == 64
 
 
 def test_a_damaged_archive_is_a_problem_and_not_an_error(tmp_path):
     (tmp_path / "b.zip").write_bytes(b"none")
-    found = reader.read(tmp_path / "b.zip", "hw2", ["f"])
-    assert found.sources == {} and found.hash == "" and len(found.problems) == 1
+    submission = reader.read(tmp_path / "b.zip", "hw2", ["f"])
+    assert submission.sources == {} and submission.hash == "" and len(submission.problems) == 1
 
 
 @pytest.mark.parametrize(
-    ("names", "told"),
+    ("names", "message"),
     [
         (["a.txt"], "none"),
         (["a.py", "b.ipynb"], "a.py, b.ipynb"),
@@ -124,13 +130,13 @@ def test_a_damaged_archive_is_a_problem_and_not_an_error(tmp_path):
     ],
 )
 def test_an_archive_with_several_notebooks_or_none_is_refused_with_their_names(
-    names, told, tmp_path
+    names, message, tmp_path
 ):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
         for name in names:
             opened.writestr(name, "1")
     path, problem = reader.extract_code_file(tmp_path / "a.zip", tmp_path, "hw2")
-    assert path == tmp_path / "a.zip" and told in problem and "g.py" not in problem
+    assert path == tmp_path / "a.zip" and message in problem and "g.py" not in problem
 
 
 # What is in it
@@ -138,7 +144,7 @@ def test_an_archive_with_several_notebooks_or_none_is_refused_with_their_names(
 
 @pytest.fixture
 def read(tmp_path):
-    """read(data) -> the Submission of a file of these bytes."""
+    """read(data) -> the Submission of a file with these bytes."""
 
     def read(data, *tasks, name="hw.py"):
         (tmp_path / name).write_bytes(data if isinstance(data, bytes) else data.encode())
@@ -159,9 +165,9 @@ def test_a_task_with_more_code_than_the_sandbox_takes_is_refused(read, monkeypat
     monkeypatch.setattr(reader, "MAX_SOURCE_CHARACTERS", len(json.dumps(text)))
     assert read(text, "f").sources == {"f": text}
     monkeypatch.setattr(reader, "MAX_SOURCE_CHARACTERS", len(json.dumps(text)) - 1)
-    found = read(text, "f")
-    (problem,) = found.problems
-    assert found.sources == {} and problem.startswith("f ") and "13" in problem
+    submission = read(text, "f")
+    (problem,) = submission.problems
+    assert submission.sources == {} and problem.startswith("f ") and "13" in problem
 
 
 def test_a_long_list_of_problems_is_cut_and_says_how_many_more_there_are(read):
@@ -188,8 +194,8 @@ def test_a_long_problem_is_cut(read):
     ],
 )
 def test_a_file_without_the_task_has_one_problem_that_names_the_cause(data, problem, read):
-    (found,) = read(data, "f").problems
-    assert found.startswith(problem)
+    (message,) = read(data, "f").problems
+    assert message.startswith(problem)
 
 
 def test_the_variants_of_a_sheet_are_read_from_its_call_of_use_plan(read):
@@ -242,23 +248,23 @@ def test_a_notebook_with_wrong_types_in_its_cells_is_read():
         code | {"input": "d", "metadata": {"hdrlab": "f"}},
         code | {"source": None, "metadata": "f"},
     ]
-    found = [
+    submissions = [
         Cell("a\nb", "f", True, "cell 2"),
         Cell("c", "", False, "cell 4"),
         Cell("d", "", False, "cell 5"),
     ]
-    found.append(Cell("", "", False, "cell 6"))
-    assert reader.cells_of(json.dumps({"cells": cells}).encode(), "a.ipynb") == (found, [])
+    submissions.append(Cell("", "", False, "cell 6"))
+    assert reader.cells_of(json.dumps({"cells": cells}).encode(), "a.ipynb") == (submissions, [])
     old = {"worksheets": [{"cells": cells[:2]}, {"cells": 7}, 8]}
-    assert reader.cells_of(json.dumps(old).encode(), "a.ipynb") == ([found[0]], [])
+    assert reader.cells_of(json.dumps(old).encode(), "a.ipynb") == ([submissions[0]], [])
 
 
 def test_half_a_character_in_a_comment_loses_no_cell():
     source = "# a broken \ud83d comment, a whole \U0001f600\ndef hat(n): return n\n"
     cell = {"cell_type": "code", "source": source}
-    ((found,), problems) = reader.cells_of(json.dumps({"cells": [cell]}).encode(), "a.ipynb")
-    assert problems == [] and "def hat" in found.text and "\U0001f600" in found.text
-    assert found.text.encode("utf8")
+    ((cell_read,), problems) = reader.cells_of(json.dumps({"cells": [cell]}).encode(), "a.ipynb")
+    assert problems == [] and "def hat" in cell_read.text and "\U0001f600" in cell_read.text
+    assert cell_read.text.encode("utf8")
 
 
 @pytest.mark.parametrize("content", [{"cells": {}}, {"worksheets": 1}, {}])

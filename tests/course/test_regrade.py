@@ -40,10 +40,12 @@ WORDS += ["--secret-file", "secret.txt"]
 
 
 class Guessing:
-    """An executor whose checks draw lots: by what was handed in, and by the text of the hidden check."""
+    """An executor whose results depend only on the submission and on the text of the hidden check."""
 
-    def __init__(self, course, asked):
-        self.course, self.waiting, self.check = course, [], Path("checks/test_hat.py").read_bytes()
+    def __init__(self, course, arguments):
+        self.course = course
+        self.waiting = []
+        self.check = Path("checks/test_hat.py").read_bytes()
 
     def __enter__(self):
         return self
@@ -63,11 +65,12 @@ class Guessing:
         digest = sha256(piece.path.read_bytes() + self.check).digest()
         checks = []
         for k, byte in enumerate(digest[:5]):
-            outcome, earned = ("holds", 2) if byte % 2 else ("fails", 0)
+            outcome = "holds" if byte % 2 else "fails"
+            earned = 2 if byte % 2 else 0
             words = f"test_{k}", f"The {k}. promise", Fraction(earned), Fraction(2), outcome
             checks.append(Check("hat", *words, hidden=k == 4))
         handed = sha256(piece.path.read_bytes()).hexdigest()
-        found = Result(
+        result = Result(
             piece.owner,
             "hw2",
             "T",
@@ -80,12 +83,12 @@ class Guessing:
             "x",
             {"hdrlab": "1"},
         )
-        return results.to_json(found)
+        return results.to_json(result)
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Make a class of five, two of them a team, and go there; its checks draw lots."""
+    """Make a class of five, two of them a team, with random results, and change to its folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "_executor", Guessing)
     monkeypatch.setattr(command, "_compare", lambda *_: None)
@@ -133,7 +136,7 @@ def grade(out="out", *more):
 
 
 def work(out="out"):
-    """Return each student's points before what being late costs."""
+    """Return each student's points before late days are subtracted."""
     return {
         row["student"]: float(row["work"])
         for row in csv_tables.read_csv(Path(out) / "gradebook.csv")
@@ -141,13 +144,15 @@ def work(out="out"):
 
 
 def contents(out, *parts):
-    """Return what stands in a folder, or in parts of it, by name."""
-    found = [path for part in parts for path in (Path(out) / part, *(Path(out) / part).rglob("*"))]
-    return {str(path.relative_to(out)): path.read_bytes() for path in found if path.is_file()}
+    """Return the content of a folder, or of parts of it, by name."""
+    paths = [path for part in parts for path in (Path(out) / part, *(Path(out) / part).rglob("*"))]
+    return {str(path.relative_to(out)): path.read_bytes() for path in paths if path.is_file()}
 
 
 def moved(seed, direction):
-    """Return a version of the check by which some work rises, or falls, against version 0."""
+    """Return the scores under version 0 and under a version of the check that raises, or lowers, one of
+    them.
+    """
     for version in range(seed, seed + 50):
         correct(0)
         before = {team: json.loads(guessed(team))["score"] for team in TEAMS}
@@ -155,7 +160,7 @@ def moved(seed, direction):
         after = {team: json.loads(guessed(team))["score"] for team in TEAMS}
         if any(direction * (after[team] - before[team]) > 0 for team in TEAMS):
             return before, after
-    raise AssertionError("no version moves any work that way")
+    raise AssertionError("no version changes a score in this direction")
 
 
 def guessed(team):
@@ -173,21 +178,19 @@ def test_a_regrade_shows_all_score_changes_before_it_is_applied(folder, capsys):
     Path("checks/test_hat.py").write_text(version)
     capsys.readouterr()
     run("regrade", "out", "--homework", "hw2")
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     now = contents("out", "")
     assert {name: data for name, data in now.items() if not name.startswith("regrade")} == whole
     for team in TEAMS:
-        line = next((one for one in said.splitlines() if one.startswith(f"{team} ")), "")
+        line = next((text for text in output.splitlines() if text.startswith(f"{team} ")), "")
         assert bool(line) == (before[team] != after[team])
         assert not line or f"{before[team]:g} -> {after[team]:g}" in line and "hat: The" in line
     up = sum(after[team] > before[team] for team in TEAMS)
     down = sum(after[team] < before[team] for team in TEAMS)
-    assert f"{len(TEAMS)} graded again: {up} scores would go up, {down} down" in said
+    assert f"{len(TEAMS)} graded again: {up} scores would go up, {down} down" in output
     page = Path("out/regrade/regrade.html").read_text()
-    assert (
-        "→" in page
-        and f"{up + down} of {len(TEAMS)} submissions would get a different score" in page
-    )
+    assert "→" in page
+    assert f"{up + down} of {len(TEAMS)} submissions would get a different score" in page
     assert all(
         f"feedback/{team}/feedback.html" in page for team in TEAMS if before[team] != after[team]
     )
@@ -265,8 +268,8 @@ def test_the_journal_records_each_regrade_and_an_altered_line_is_found(folder, c
         correct(version)
         run("regrade", "out", "--apply", "--why", f"version {version}")
     log = Path("out/journal.jsonl")
-    lines = [json.loads(one) for one in log.read_text().splitlines()]
-    assert [(one["number"], one["why"], one["policy"]) for one in lines] == [
+    lines = [json.loads(entry) for entry in log.read_text().splitlines()]
+    assert [(entry["number"], entry["why"], entry["policy"]) for entry in lines] == [
         (1, "version a", "replace"),
         (2, "version b", "replace"),
     ]
@@ -298,7 +301,7 @@ def test_a_submission_that_cannot_be_graded_again_keeps_its_points(folder, monke
     correct("1")
     result = Guessing.result
     monkeypatch.setattr(
-        Guessing, "result", lambda self, one: None if one.owner == "b4" else result(self, one)
+        Guessing, "result", lambda self, job: None if job.owner == "b4" else result(self, job)
     )
     run("regrade", "out", "--apply")
     assert "warning: b4: it ended 3 times without a result" in capsys.readouterr().err
@@ -317,7 +320,7 @@ def test_a_missing_secret_is_reported_and_not_replaced(folder, capsys):
 
 
 @pytest.mark.parametrize(
-    ("prepare", "words", "said"),
+    ("prepare", "words", "message"),
     [
         (lambda: None, [], "no results of a class"),
         (
@@ -333,23 +336,25 @@ def test_a_missing_secret_is_reported_and_not_replaced(folder, capsys):
         ),
     ],
 )
-def test_an_impossible_regrade_is_refused_in_one_line(folder, capsys, prepare, words, said):
+def test_an_impossible_regrade_is_refused_in_one_line(folder, capsys, prepare, words, message):
     Path("out").mkdir()
     prepare()
     capsys.readouterr()
     run("regrade", "out", *words, code=2)
-    told = capsys.readouterr().err
-    assert said in told and told.count("\n") == 1
+    output = capsys.readouterr().err
+    assert message in output and output.count("\n") == 1
 
 
 def killed(rng, *words):
-    """Run a command in a process that kills itself before one of the changes that it makes to the disk.
+    """Run a command in a process that kills itself before one of its changes to the disk.
 
-    Returns whether it was killed.
+    Return whether it was killed.
     """
     left = rng.randrange(1, 60)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of forking beside threads
+        warnings.simplefilter(
+            "ignore", DeprecationWarning
+        )  # about forking in a process with threads
         child = os.fork()
     if not child:
 
@@ -379,8 +384,9 @@ def killed(rng, *words):
 
 
 def lived(rng):
-    """Live through a history of a class, and return how often a command was killed in it."""
-    kills, version = 0, 0
+    """Run the history of a class, and return how often a command was killed."""
+    kills = 0
+    version = 0
     grade()
     for _ in range(rng.randrange(2, 7)):
         event = rng.choice(["correct", "hand in", "grade", "regrade", "regrade", "never-lower"])
@@ -395,7 +401,8 @@ def lived(rng):
             kills += killed(rng, "regrade", "out", *more)
         elif event == "never-lower":
             grade()
-            before, version = work(), version + 1
+            before = work()
+            version = version + 1
             correct(version)
             for _ in range(3):
                 if not killed(rng, "regrade", "out", "--policy", "never-lower", "--apply"):
@@ -412,7 +419,8 @@ def lived(rng):
 @pytest.mark.grading
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes that it has forked")
 def test_after_any_history_an_applied_regrade_equals_grading_from_scratch(folder):
-    rng, kills = random.Random(25), 0
+    rng = random.Random(25)
+    kills = 0
     for number in range(HISTORIES):
         home = folder / f"class{number}"
         home.mkdir()

@@ -58,9 +58,8 @@ def test_a_result_survives_the_round_trip_through_json(hostile):
     data = results.to_json(hostile)
     assert results.from_json(data) == hostile
     read = json.loads(data)
-    assert {"score", "max_score", "tier", "checks"} <= set(read) and read[
-        "version"
-    ] == results.VERSION
+    assert {"score", "max_score", "tier", "checks"} <= set(read)
+    assert read["version"] == results.VERSION
     assert data.isascii()
 
 
@@ -97,8 +96,8 @@ def values(read):
     if isinstance(read, dict | list):
         return [
             text
-            for one in (read.values() if isinstance(read, dict) else read)
-            for text in values(one)
+            for item in (read.values() if isinstance(read, dict) else read)
+            for text in values(item)
         ]
     return [str(read)]
 
@@ -133,7 +132,9 @@ def test_a_teams_copy_shows_only_the_name_and_points_of_a_hidden_check(hostile):
 
 def test_unknown_fields_of_a_result_are_not_in_a_teams_copy(hostile):
     whole = json.loads(results.to_json(hostile))
-    whole["answers"] = whole["checks"][0]["answer"] = whole["checks"][2]["answer"] = "expected 0.25"
+    whole["answers"] = "expected 0.25"
+    whole["checks"][0]["answer"] = "expected 0.25"
+    whole["checks"][2]["answer"] = "expected 0.25"
     assert "expected 0.25" not in results.for_team(json.dumps(whole).encode()).decode()
 
 
@@ -146,28 +147,25 @@ def test_written_results_are_readable_by_their_owner_only(hostile, tmp_path):
 def test_a_passed_check_without_points_says_why(hostile):
     held = replace(CHECK, points=Fraction(), message="It only earns points if this passes, too: B")
     result = replace(hostile, checks=(held,))
-    assert "if this passes, too: B" in feedback.text(
-        result
-    ) and "if this passes, too: B" in feedback.page(result)
+    assert "if this passes, too: B" in feedback.text(result)
+    assert "if this passes, too: B" in feedback.page(result)
 
 
 def test_the_gradescope_file_follows_its_schema(hostile):
-    """The keys, types and words of its specification of results.json."""
+    """The keys, types and values of Gradescope's specification of results.json."""
     read = json.loads(gradebook.gradescope(hostile))
     assert {"score", "output", "visibility", "stdout_visibility", "tests"} <= set(read)
     visibilities = {"hidden", "after_due_date", "after_published", "visible"}
     assert read["visibility"] in visibilities and read["stdout_visibility"] in visibilities
     assert read["output_format"] in {"text", "html", "simple_format", "md", "ansi"}
-    assert 0 <= read["score"] <= sum(one["max_score"] for one in read["tests"])
-    for one in read["tests"]:
-        assert isinstance(one["score"], float) and isinstance(one["max_score"], float)
-        assert one["status"] in {"passed", "failed"} and one["visibility"] in visibilities
-        assert (
-            isinstance(one["name"], str)
-            and isinstance(one["output"], str)
-            and one["output_format"] == "text"
-        )
-    assert sum(one["score"] for one in read["tests"]) == pytest.approx(read["score"])
+    assert 0 <= read["score"] <= sum(test["max_score"] for test in read["tests"])
+    for test in read["tests"]:
+        assert isinstance(test["score"], float) and isinstance(test["max_score"], float)
+        assert test["status"] in {"passed", "failed"} and test["visibility"] in visibilities
+        assert isinstance(test["name"], str)
+        assert isinstance(test["output"], str)
+        assert test["output_format"] == "text"
+    assert sum(test["score"] for test in read["tests"]) == pytest.approx(read["score"])
     assert "the secret" not in json.dumps(read)
 
 
@@ -181,7 +179,7 @@ def test_gradescope_shows_which_checks_passed_and_which_failed(hostile):
 def test_the_junit_file_is_valid_xml_for_hostile_text(hostile):
     root = ElementTree.fromstring(gradebook.junit(hostile))
     assert root.get("tests") == "3" and root.get("failures") == "2"
-    failures = [one.text or "" for one in root.iter("failure")]
+    failures = [failure.text or "" for failure in root.iter("failure")]
     assert "<script>" in failures[0] and "\x00" not in failures[0] and failures[1] == ""
 
 
@@ -214,22 +212,21 @@ def test_the_hints_are_three_steps_each_within_the_one_before(hostile):
 
 def test_all_formats_of_a_result_are_written_to_one_folder(hostile, tmp_path):
     files = gradebook.write_results(tmp_path / "out", hostile)
-    assert sorted(one.name for one in (tmp_path / "out").iterdir()) == sorted(gradebook.FILES)
-    assert all(one.stat().st_size for one in files)
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == sorted(gradebook.FILES)
+    assert all(file.stat().st_size for file in files)
 
 
 def test_the_terminal_shows_hints_only_on_request(hostile):
     check = replace(hostile.checks[1], hints=("first", "second", "third"))
     result = replace(hostile, checks=(check,))
     assert "first" not in feedback.text(result)
-    assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(
-        result, hints=1
-    )
+    assert "first" in feedback.text(result, hints=1)
+    assert "second" not in feedback.text(result, hints=1)
     assert "third" in feedback.text(result, hints=3)
 
 
 def chosen(earned, at_most):
-    """A Result of three tasks of 40 points each, of which so many count."""
+    """A Result of three tasks of 40 points each, of which only so many points count."""
     checks = [
         Check(
             f"task{n}",
@@ -268,7 +265,7 @@ def test_a_score_never_exceeds_the_maximum_of_a_homework_with_chosen_tasks(earne
 
 @pytest.mark.parametrize("value", [None, 7, 1e300, "1e99999999", "9" * 5000, [], {"a": 1}, [3]])
 def test_a_result_with_any_wrong_value_is_read_or_refused_at_once(hostile, value):
-    """What is read can be written again, with its score."""
+    """Every result that can be read can be written again, with its score."""
 
     def try_reading(whole):
         try:

@@ -66,9 +66,8 @@ def test_a_teams_copy_equals_the_result_without_hidden_parts():
     shown = results.for_team(results.to_json(hidden))
     assert shown.startswith(b'{\n "version": 1,\n "student": "ada",') and shown.endswith(b"}\n")
     read = json.loads(shown)
-    assert set(read["checks"][0]) == set(results.PUBLIC_CHECK_FIELDS) and set(
-        read["checks"][1]
-    ) == set(results.HIDDEN_CHECK_FIELDS)
+    assert set(read["checks"][0]) == set(results.PUBLIC_CHECK_FIELDS)
+    assert set(read["checks"][1]) == set(results.HIDDEN_CHECK_FIELDS)
     assert b"\\u00e9" in shown and b"secret" not in shown and "at_most" not in read
 
 
@@ -92,9 +91,9 @@ def test_a_score_is_the_points_up_to_the_maximum(at_most, score, most):
         replace(CHECK, task="b", points=Fraction(2)),
         replace(CHECK, points=Fraction(1)),
     )
-    found = replace(RESULT, checks=checks, at_most=at_most)
-    assert (found.score, found.max_score, found.tasks) == (score, most, ("a", "b"))
-    assert found.of("a") == (checks[0], checks[2]) and results.points(found.of("b")) == (2, 2)
+    changed = replace(RESULT, checks=checks, at_most=at_most)
+    assert (changed.score, changed.max_score, changed.tasks) == (score, most, ("a", "b"))
+    assert changed.of("a") == (checks[0], checks[2]) and results.points(changed.of("b")) == (2, 2)
 
 
 @pytest.mark.parametrize(
@@ -107,9 +106,9 @@ def test_a_score_is_the_points_up_to_the_maximum(at_most, score, most):
     ],
 )
 def test_a_score_for_credit_needs_a_sandbox_and_secret_inputs(tier, seed, credit):
-    found = replace(RESULT, tier=tier, seed=seed)
-    assert found.for_credit is credit and bool(found.why_practice) is not credit
-    assert ("without a sandbox" in found.why_practice) is (tier == "practice")
+    changed = replace(RESULT, tier=tier, seed=seed)
+    assert changed.for_credit is credit and bool(changed.why_practice) is not credit
+    assert ("without a sandbox" in changed.why_practice) is (tier == "practice")
 
 
 def test_a_result_of_an_earlier_version_has_defaults_for_later_fields():
@@ -120,7 +119,7 @@ def test_a_result_of_an_earlier_version_has_defaults_for_later_fields():
     for name in ("student", "checks", "problems"):
         with pytest.raises(ValueError, match="result written by hdrlab grade"):
             results.from_json(
-                json.dumps({key: one for key, one in read.items() if key != name}).encode()
+                json.dumps({key: value for key, value in read.items() if key != name}).encode()
             )
     del read["checks"][0]["said"]
     with pytest.raises(ValueError, match="'said'"):
@@ -129,11 +128,12 @@ def test_a_result_of_an_earlier_version_has_defaults_for_later_fields():
 
 def test_images_of_a_result_are_stored_as_text():
     drawing = Drawing((b"RIFF", b"2"), ("a", "b"), ("c", "d"))
-    told = [
+    drawings = [
         {"webp": "UklGRg==", "alt": "a", "caption": "c"},
         {"webp": "Mg==", "alt": "b", "caption": "d"},
     ]
-    assert results.drawing_to_json(drawing) == told and results.drawing_from_json(told) == drawing
+    assert results.drawing_to_json(drawing) == drawings
+    assert results.drawing_from_json(drawings) == drawing
     with pytest.raises(ValueError, match="zip"):
         results.drawing_to_json(drawing._replace(alts=("a",)))
 
@@ -147,11 +147,12 @@ def test_points_are_shown_in_hundredths_at_most(value, text):
 
 
 def test_the_page_shows_private_parts_and_the_terminal_shows_hints_on_request():
-    found = replace(RESULT, checks=(replace(CHECK, hints=("first", "second"), message="no"),))
-    assert feedback.text(found) == feedback.text(found, hints=0, private=False)
-    assert "first" not in feedback.text(found) and "second" not in feedback.text(found, hints=1)
-    assert "first" in feedback.text(found, hints=1) and "second" in feedback.text(found, hints=2)
-    secret = replace(found, checks=(replace(CHECK, hidden=True, message="the reason"),))
+    changed = replace(RESULT, checks=(replace(CHECK, hints=("first", "second"), message="no"),))
+    assert feedback.text(changed) == feedback.text(changed, hints=0, private=False)
+    assert "first" not in feedback.text(changed) and "second" not in feedback.text(changed, hints=1)
+    assert "first" in feedback.text(changed, hints=1)
+    assert "second" in feedback.text(changed, hints=2)
+    secret = replace(changed, checks=(replace(CHECK, hidden=True, message="the reason"),))
     for shown in (feedback.page, feedback.fragment, feedback.text):
         assert "the reason" in shown(secret, private=True) and "the reason" not in shown(secret)
 
@@ -162,10 +163,8 @@ def test_all_formats_are_readable_by_their_owner_only(tmp_path):
         files = gradebook.write_results(folder, RESULT, shown)
         assert files == [folder / name for name in gradebook.FILES]
         assert {file.stat().st_mode & 0o777 for file in files} == {0o600}
-        assert (
-            folder.stat().st_mode & 0o777 == 0o700
-            and (folder / "result.json").read_bytes() == expected
-        )
+        assert folder.stat().st_mode & 0o777 == 0o700
+        assert (folder / "result.json").read_bytes() == expected
     assert (
         gradebook.table(RESULT)
         == "student,homework,tier,score,max_score,a\r\nada,hw2,strict,0.3333,2.0,0.3333\r\n"

@@ -1,4 +1,4 @@
-"""The class list, its teams, and tables that spreadsheets cannot run."""
+"""The class list, its teams, and tables whose cells spreadsheets do not execute."""
 
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -18,12 +18,14 @@ def listed(tmp_path):
 
 
 def test_a_roster_has_students_and_teams(listed):
-    found = listed("Student,Name,Team\nb1,Ada,7\nb2,Bo,7\n\nb3,Cy,\n")
-    assert {team: [one.id for one in members] for team, members in found.teams().items()} == {
+    roster_read = listed("Student,Name,Team\nb1,Ada,7\nb2,Bo,7\n\nb3,Cy,\n")
+    assert {
+        team: [member.id for member in members] for team, members in roster_read.teams().items()
+    } == {
         "7": ["b1", "b2"],
         "b3": ["b3"],
     }
-    assert found.find(" B2 ").name == "Bo" and found.find_team("b2") == "7"
+    assert roster_read.find(" B2 ").name == "Bo" and roster_read.find_team("b2") == "7"
 
 
 def test_a_team_may_have_as_many_students_as_the_plan_says(tmp_path):
@@ -34,7 +36,7 @@ def test_a_team_may_have_as_many_students_as_the_plan_says(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("name\nAda\n", "column student"),
         ("student\nb1\nB1\n", "lines 2 and 3: "),
@@ -46,8 +48,8 @@ def test_a_team_may_have_as_many_students_as_the_plan_says(tmp_path):
         ("", "empty"),
     ],
 )
-def test_a_wrong_roster_is_refused_with_its_line(listed, text, said):
-    with pytest.raises(ValueError, match=said):
+def test_a_wrong_roster_is_refused_with_its_line(listed, text, message):
+    with pytest.raises(ValueError, match=message):
         listed(text)
 
 
@@ -100,32 +102,36 @@ def test_every_file_name_belongs_to_one_owner_of_the_roster(tmp_path_factory, id
     path = tmp_path_factory.mktemp("class") / "roster.csv"
     path.write_text("\n".join(["student", *ids]))
     try:
-        found = roster.read(path)
+        roster_read = roster.read(path)
     except ValueError:
         return
     for id in ids:
         for name in (id, f"{id}_hw2.ipynb", f"{id}.zip", f"{id.upper()}-b.py"):
-            assert found.owner(name) == id
+            assert roster_read.owner(name) == id
 
 
 def test_a_stranger_is_reported(listed):
-    found = listed("student,team\nb1,7\nb2,8\n")
+    roster_read = listed("student,team\nb1,7\nb2,8\n")
     with pytest.raises(ValueError, match="student .*roster"):
-        found.find("b9")
+        roster_read.find("b9")
 
 
 def test_a_team_is_found_by_its_name_or_a_member_in_any_case():
-    found = roster.Roster((roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "t1")))
+    roster_read = roster.Roster(
+        (roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "t1"))
+    )
     for name in ("t1", "T1", "b1", " B2 "):
-        assert found.find_team(name) == "t1"
+        assert roster_read.find_team(name) == "t1"
     with pytest.raises(InputError, match="t9"):
-        found.find_team("t9")
+        roster_read.find_team("t9")
 
 
 def test_a_name_that_could_mean_two_teams_is_refused():
-    found = roster.Roster((roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "T1")))
+    roster_read = roster.Roster(
+        (roster.Student("b1", "Ada", "t1"), roster.Student("b2", "Bo", "T1"))
+    )
     with pytest.raises(InputError, match="T1, t1"):
-        found.find_team("t1")
+        roster_read.find_team("t1")
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,7 @@ NAMES = re.findall(r"^def (\w+)", FUNCTIONS, re.MULTILINE)
 
 
 def opened(tier, sources=None, timeout=30.0):
-    """Return a Subject in a tier, or skip with the machine's reason."""
+    """Return a Subject in a tier; skip the test if this machine cannot run the tier."""
     try:
         return Subject(sources or dict.fromkeys(NAMES, FUNCTIONS), tiers.choose(tier), timeout)
     except tiers.Unavailable as reason:
@@ -100,14 +100,14 @@ def running_subject(request):
 
 @pytest.fixture
 def subject(running_subject):
-    """A Subject in each tier, afresh."""
+    """A new Subject in each tier."""
     running_subject.fresh()
     return running_subject
 
 
 @pytest.fixture
 def adopted():
-    """What loses its parent becomes a child of this process, so that it is seen."""
+    """Make orphaned processes children of this one, so that the test finds them."""
     libc = ctypes.CDLL(None)
     libc.prctl(36, 1, 0, 0, 0)
     yield
@@ -115,7 +115,7 @@ def adopted():
 
 
 def alone(source, tier, **others):
-    """Return what the function f of a source answers, in a sandbox of its own."""
+    """Return the answer of the function f of a source, in its own sandbox."""
     with opened(tier, {"f": source}, **others) as subject:
         return subject.f()
 
@@ -124,14 +124,15 @@ def test_answers_from_the_sandbox_are_plain_arrays(subject):
     x = np.arange(6.0).reshape(2, 3)
     np.testing.assert_array_equal(subject.scaled(x, k=3), 3 * x)
     states = subject.steps(x)
-    assert [type(state) for state in states] == [tuple] * 3 and [int(n) for _, n in states] == [
+    assert [type(state) for state in states] == [tuple] * 3
+    assert [int(n) for _, n in states] == [
         0,
         1,
         2,
     ]
     np.testing.assert_array_equal(states[2][0], x + 2)
-    (array, one), raw, none, text, truth = subject.both(x)
-    assert raw == b"bytes" and none is None and text == "text" and truth == 1 and one == 1
+    (array, tier), raw, none, text, truth = subject.both(x)
+    assert raw == b"bytes" and none is None and text == "text" and truth == 1 and tier == 1
     assert subject.nothing(x) is None
     assert subject.transformed(np.ones((8, 8))).shape == (8, 8)
     assert subject.calls[0].task == "scaled" and subject.calls[0].kwargs == {"k": 3}
@@ -156,9 +157,9 @@ def test_answers_from_the_sandbox_are_plain_arrays(subject):
     ],
 )
 def test_a_failed_call_has_a_plain_message_and_the_next_call_works(subject, task, kind, says):
-    with pytest.raises(NoAnswer, match=says) as told:
+    with pytest.raises(NoAnswer, match=says) as error:
         getattr(subject, task)(1.0)
-    assert told.value.kind == kind
+    assert error.value.kind == kind
     assert subject.scaled(1.0) == 2.0
 
 
@@ -181,11 +182,9 @@ def test_no_state_survives_from_one_check_to_the_next(subject):
 
 def test_printed_text_and_warnings_are_recorded_without_control_codes(subject):
     subject.loud(1.0)
-    assert (
-        "said\n" in subject.printed
-        and "UserWarning: warned" in subject.printed
-        and "red\n" in subject.printed
-    )
+    assert "said\n" in subject.printed
+    assert "UserWarning: warned" in subject.printed
+    assert "red\n" in subject.printed
     assert "\x1b" not in subject.printed
     subject.fresh()
     assert subject.printed == ""
@@ -322,7 +321,7 @@ def test_only_the_library_folders_of_this_processor_are_visible(apart, monkeypat
 
 
 def test_without_fork_each_check_has_its_own_process():
-    """As on Windows, but for the way in which the process is handed its socket."""
+    """As on Windows, except for the way in which the process gets its socket."""
     tier = replace(practice.sandbox(), can_fork=False)
     with Subject(dict.fromkeys(NAMES, FUNCTIONS), tier, 30) as subject:
         assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
@@ -343,7 +342,7 @@ def test_remembered_answers_have_a_limited_size():
     with opened("practice", {"f": source}) as subject:
         for n in (1 << 19, 1 << 18, 1 << 19, 1):
             assert len(subject.f(n)) == n
-        kept = [None if one.answer is None else len(one.answer) for one in subject.calls]
+        kept = [None if call.answer is None else len(call.answer) for call in subject.calls]
     assert kept == [1 << 19, 1 << 18, None, 1]
 
 
@@ -354,7 +353,7 @@ def test_an_unknown_tier_is_an_error():
 
 @pytest.fixture
 def without(monkeypatch):
-    """without(what) -> nothing is remembered of what was there."""
+    """without(name) -> forget everything that was cached about it."""
     strict.bubblewrap.cache_clear()
     filters.program.cache_clear()
     yield monkeypatch
@@ -422,8 +421,9 @@ def strict_anyway():
 def test_a_user_number_is_given_to_one_sandbox_at_a_time():
     if os.geteuid() != 0:
         pytest.skip("only root can become another user")
-    (first, one), (second, two) = users.lease(), users.lease()
-    with one, two:
+    first, first_lease = users.lease()
+    second, second_lease = users.lease()
+    with first_lease, second_lease:
         assert first != second and {first, second} <= set(users.SPARE_USERS)
     again, held = users.lease()
     held.close()
@@ -432,7 +432,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
 
 @pytest.mark.grading
 def test_a_killed_grader_leaves_no_process_and_no_folder(adopted, tmp_path):
-    """Whatever tier: with the parent gone, the process of the check and its supervisor are gone soon."""
+    """In all tiers, the process of the check and its supervisor end soon after the parent has died."""
     for tier in ("strict", "practice"):
         opened(tier)
         code = (
@@ -464,7 +464,7 @@ def test_a_killed_grader_leaves_no_process_and_no_folder(adopted, tmp_path):
 
 
 def test_root_and_an_ordinary_user_have_the_same_strict_tier():
-    """Run by root, this asks as an ordinary user as well, with an interpreter that such a user can read."""
+    """Root also tries it as an ordinary user, with an interpreter that this user can read."""
     opened("strict")
     if os.geteuid() != 0:
         pytest.skip("this is an ordinary user: the other tests are the answer")
@@ -475,8 +475,8 @@ def test_root_and_an_ordinary_user_have_the_same_strict_tier():
     )
     user, held = users.lease()
     with held:
-        asked = "import sys, numpy, scipy, hdrlab.course.checks; print(sys.version_info[:2])"
-        able = as_user(user, asked) == f"{sys.version_info[:2]}\n"
+        command = "import sys, numpy, scipy, hdrlab.course.checks; print(sys.version_info[:2])"
+        able = as_user(user, command) == f"{sys.version_info[:2]}\n"
         if not able:
             pytest.skip(
                 "an ordinary user can read no interpreter of this version here, or not this installation"
@@ -485,12 +485,12 @@ def test_root_and_an_ordinary_user_have_the_same_strict_tier():
 
 
 def as_user(user, code):
-    """Return what the system's Python prints as another user, or its error."""
+    """Return the output of the system's Python as another user, or its error."""
     paths = [
         Path(channel.__file__).parents[4],
-        *{os.path.dirname(one) for one in session.package_folders().values()},
+        *{os.path.dirname(place) for place in session.package_folders().values()},
     ]
-    told = subprocess.run(
+    process = subprocess.run(
         ["/usr/bin/env", "python3", "-B", "-c", code],
         env={
             "PYTHONPATH": ":".join(map(str, paths)),
@@ -504,14 +504,15 @@ def as_user(user, code):
         capture_output=True,
         text=True,
     )
-    return told.stdout or told.stderr
+    return process.stdout or process.stderr
 
 
 def test_the_practice_tier_lists_what_it_does_not_stop(tmp_path):
-    """Each sentence has a function here that does what it says; none reaches beyond its own folder."""
+    """For each sentence, a function does what the sentence says, within its own folder."""
     (tmp_path / "solution.py").write_text("ANSWER = 42\n")
     (tmp_path / "yours.txt").write_text("yours")
-    place, me = str(tmp_path), os.getpid()
+    place = str(tmp_path)
+    me = os.getpid()
     done = {
         "reading any file": f"open({place + '/solution.py'!r}).read().split()[-1]",
         "importing a package": f"sys.path.insert(0, {place!r}) or __import__('solution').ANSWER",
@@ -529,8 +530,9 @@ def test_the_practice_tier_lists_what_it_does_not_stop(tmp_path):
 
 
 def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
-    """A full memory, a file without end, and processes that are left behind."""
-    before, name = system.list_children(), str(tmp_path / "written")
+    """Too much memory, an endless file, and processes that are left behind."""
+    before = system.list_children()
+    name = str(tmp_path / "written")
     with pytest.raises(NoAnswer, match="MemoryError"):
         alone("import numpy as np\ndef f(): return np.ones(1 << 34).sum()", "practice")
     with pytest.raises(NoAnswer, match="File too large"):
@@ -548,18 +550,16 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
 
 
 def test_the_doctor_reports_whether_each_tier_works_and_how_to_fix_it(without):
-    found = {finding.tier: finding for finding in doctor.examine_tiers()}
-    assert list(found) == ["strict", "container", "practice"]
-    for tier, finding in found.items():
+    findings = {finding.tier: finding for finding in doctor.examine_tiers()}
+    assert list(findings) == ["strict", "container", "practice"]
+    for tier, finding in findings.items():
         assert finding.credit == (tier != "practice")
         assert finding.details and (finding.works or finding.credit)
-    assert all(sentence in found["practice"].details for sentence in practice.DOES_NOT_STOP)
+    assert all(sentence in findings["practice"].details for sentence in practice.DOES_NOT_STOP)
     strict.bubblewrap.cache_clear()
     without.setattr(shutil, "which", lambda name: None)
-    assert (
-        not doctor.examine("strict").works
-        and "apt install bubblewrap" in doctor.examine("strict").remedy
-    )
+    assert not doctor.examine("strict").works
+    assert "apt install bubblewrap" in doctor.examine("strict").remedy
 
 
 def test_the_doctor_advises_to_install_only_what_is_missing():
@@ -613,12 +613,12 @@ def test_a_check_is_cleared_away_once(monkeypatch):
         assert seconds > 0
         left = inside.cpu_seconds_left
         with monkeypatch.context() as changed:
-            changed.setattr(session.channel, "send", None)  # nothing more is asked of it
+            changed.setattr(session.channel, "send", None)  # no further requests are sent
             assert inside.clear_check() == (0, 0.0) and inside.cpu_seconds_left == left
 
 
 def test_the_container_tier_works_where_mounting_is_forbidden():
-    """As in most containers: root, without the right to have namespaces."""
+    """As in most containers: root, without the right to create namespaces."""
     opened("container")
     if shutil.which("setpriv") is None:
         pytest.skip("there is no setpriv, by which root gives a right up")
@@ -634,24 +634,20 @@ def test_the_container_tier_works_where_mounting_is_forbidden():
         "-c",
         code,
     ]
-    told = subprocess.run(less, capture_output=True, text=True).stdout.splitlines()
-    assert told[0].startswith("strict False the strict ")
-    assert "container True started in" in told[1] and told[2].startswith("practice True")
+    lines = subprocess.run(less, capture_output=True, text=True).stdout.splitlines()
+    assert lines[0].startswith("strict False the strict ")
+    assert "container True started in" in lines[1] and lines[2].startswith("practice True")
 
 
 def test_the_doctor_finds_a_leaking_sandbox(monkeypatch):
     weak = replace(practice.sandbox(), tier="strict", credit=True)
     monkeypatch.setitem(tiers.TIERS, "strict", lambda: weak)
     finding = doctor.examine("strict")
-    assert (
-        not finding.works
-        and finding.credit
-        and "a file of the grader could be read" in finding.details
-    )
-    assert (
-        "a process could be started" in finding.details
-        and "a socket could be made" in finding.details
-    )
+    assert not finding.works
+    assert finding.credit
+    assert "a file of the grader could be read" in finding.details
+    assert "a process could be started" in finding.details
+    assert "a socket could be made" in finding.details
     assert not Path("/tmp/hdrlab-doctor").exists()
 
 
@@ -713,9 +709,9 @@ def test_a_missing_answer_says_what_ended_the_process(sent, ended, used, forks, 
     theirs.sendall(sent)
     theirs.close()
     gone = linked(lambda: ours, forks=forks, ended=ended, used=used)
-    with gone as subject, pytest.raises(NoAnswer) as told:
+    with gone as subject, pytest.raises(NoAnswer) as error:
         subject.f()
-    assert told.value.kind == kind
+    assert error.value.kind == kind
 
 
 def test_the_time_of_a_check_and_of_a_submission_is_limited():
@@ -726,24 +722,24 @@ def test_the_time_of_a_check_and_of_a_submission_is_limited():
         theirs.append(other)
         return ours
 
-    said = []
+    messages = []
     with linked(check, timeout=0.02) as subject:
         for _ in range(10):
             subject.fresh()
             for _ in range(4):
-                with pytest.raises(NoAnswer) as told:
+                with pytest.raises(NoAnswer) as error:
                     subject.f()
-                assert told.value.kind == "late"
-            said.append(str(told.value))
-    for one in theirs:
-        one.close()
-    assert "0.06 s" in said[0]
-    assert "0.4 s" in said[-1]
+                assert error.value.kind == "late"
+            messages.append(str(error.value))
+    for folder in theirs:
+        folder.close()
+    assert "0.06 s" in messages[0]
+    assert "0.4 s" in messages[-1]
 
 
 @contextlib.contextmanager
 def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
-    """Yield a Subject whose links come from a function, and whose processes ended so."""
+    """Yield a Subject whose connections come from a function, and whose processes have ended like this."""
     subject = Subject({"f": "def f(): return 1"}, practice.sandbox(), timeout)
     subject._session = SimpleNamespace(
         cpu_seconds_left=9.0,

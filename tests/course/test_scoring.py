@@ -20,16 +20,16 @@ def checks(*outcomes, points=4, **more):
     ]
 
 
-def earned(found):
-    return [float(one.points) for one in found]
+def earned(scored):
+    return [float(check.points) for check in scored]
 
 
 @pytest.mark.parametrize("points", ["10", "7.5", "1", "7.25", "0"])
 @pytest.mark.parametrize("weights", [(1, 4, 3, 3), (1, 1, 1), (14, 6, 6, 2, 3, 1), (5,)])
 def test_shares_sum_to_the_points_and_are_whole_or_half_where_these_are(points, weights):
-    shares = split_points(Fraction(points), [Fraction(one) for one in weights])
+    shares = split_points(Fraction(points), [Fraction(weight) for weight in weights])
     assert sum(shares) == Fraction(points) and min(shares) >= 0
-    assert sum(2 * one != int(2 * one) for one in shares) <= (points == "7.25")
+    assert sum(2 * weight != int(2 * weight) for weight in shares) <= (points == "7.25")
 
 
 def test_every_promise_of_the_plan_is_worth_something():
@@ -40,53 +40,57 @@ def test_every_promise_of_the_plan_is_worth_something():
 
 
 def test_a_named_mistake_costs_half_at_most_and_the_rest_follows_from_the_first():
-    found = attribute_failures(
+    scored = attribute_failures(
         checks("holds", "fails", "fails", "fails"), {}, named=True, once=True
     )
-    assert earned(found) == [4, 0, 0, 4]
-    assert [one.follows for one in found] == ["", "", "Promise b", "Promise b"]
+    assert earned(scored) == [4, 0, 0, 4]
+    assert [check.follows for check in scored] == ["", "", "Promise b", "Promise b"]
 
 
 def test_a_mistake_that_misses_the_method_costs_all_failed_checks():
-    found = attribute_failures(checks("holds", "fails", "fails"), {}, named=True)
-    assert earned(found) == [4, 0, 0] and found[2].follows == "Promise b"
+    scored = attribute_failures(checks("holds", "fails", "fails"), {}, named=True)
+    assert earned(scored) == [4, 0, 0] and scored[2].follows == "Promise b"
 
 
 def test_half_of_an_odd_number_of_points_is_half_a_point():
-    found = attribute_failures(
+    scored = attribute_failures(
         checks("fails", "fails", "fails", points=5), {}, named=True, once=True
     )
-    assert sum(earned(found)) == 7.5
+    assert sum(earned(scored)) == 7.5
 
 
 def test_a_check_that_needs_a_failed_check_earns_nothing():
-    found = attribute_failures(
+    scored = attribute_failures(
         checks("fails", "fails", "holds", "fails"), {"b": "a", "c": "a", "d": "b"}
     )
-    assert [one.follows for one in found] == ["", "Promise a", "", "Promise a"]
-    assert earned(found) == [0, 0, 0, 0] and "too: Promise a" in found[2].message
+    assert [check.follows for check in scored] == ["", "Promise a", "", "Promise a"]
+    assert earned(scored) == [0, 0, 0, 0] and "too: Promise a" in scored[2].message
 
 
 def test_failures_with_the_same_message_are_reported_once():
-    said = [{"kind": "raised", "message": one} for one in ("IndexError", "IndexError", "KeyError")]
-    each = [
-        replace(one, **words) for one, words in zip(checks(*3 * ["no answer"]), said, strict=True)
+    errors = [
+        {"kind": "raised", "message": kind} for kind in ("IndexError", "IndexError", "KeyError")
     ]
-    assert [one.follows for one in attribute_failures(each, {})] == ["", "Promise a", ""]
+    failures = [
+        replace(kind, **words)
+        for kind, words in zip(checks(*3 * ["no answer"]), errors, strict=True)
+    ]
+    assert [kind.follows for kind in attribute_failures(failures, {})] == ["", "Promise a", ""]
 
 
 def test_failures_without_a_common_cause_are_reported_separately():
-    assert not any(one.follows for one in attribute_failures(checks("fails", "fails"), {}))
+    assert not any(check.follows for check in attribute_failures(checks("fails", "fails"), {}))
 
 
 def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
-    found = attribute_failures(
+    scored = attribute_failures(
         checks("fails", "fails", message="It is 3"), {}, named=True, once=True
     )
     result = Result(
-        "", "hw2", "", "practice", tuple(found), {"hat": "A wrong hat."}, (), "", "", "", {}
+        "", "hw2", "", "practice", tuple(scored), {"hat": "A wrong hat."}, (), "", "", "", {}
     )
-    page, text = feedback.fragment(result), feedback.text(result)
+    page = feedback.fragment(result)
+    text = feedback.text(result)
     assert (
         page.index("Promise a") < page.index("Follows from this: 1 more") < page.index("Promise b")
     )
@@ -109,8 +113,8 @@ def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
     ],
 )
 def test_left_over_half_points_go_to_the_largest_remainders(points, weights, shares):
-    found = split_points(Fraction(points), [Fraction(one) for one in weights])
-    assert [float(one) for one in found] == list(shares)
+    parts = split_points(Fraction(points), [Fraction(weight) for weight in weights])
+    assert [float(weight) for weight in parts] == list(shares)
 
 
 @pytest.mark.parametrize(
@@ -127,19 +131,24 @@ def test_failed_checks_earn_nothing_and_follow_from_a_named_mistake(
     outcomes, knobs, earnings, follows
 ):
     words = {"h": "holds", "f": "fails"}
-    found = attribute_failures(checks(*(words[one] for one in outcomes)), {}, **knobs)
-    assert tuple(earned(found)) == earnings
-    assert tuple(one.follows.removeprefix("Promise ") for one in found) == follows
+    scored = attribute_failures(checks(*(words[outcome] for outcome in outcomes)), {}, **knobs)
+    assert tuple(earned(scored)) == earnings
+    assert tuple(outcome.follows.removeprefix("Promise ") for outcome in scored) == follows
 
 
 def test_a_hidden_check_is_never_a_cause_or_a_consequence():
     a, b, c = checks("fails", "fails", "holds")
     hidden = [replace(a, hidden=True), b, c]
-    found = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
-    assert [one.follows for one in found] == ["", "", ""] and earned(found) == [0, 0, 4]
-    assert found[2].message == ""
+    scored = attribute_failures(hidden, {"c": "a", "b": "a"}, named=True)
+    assert [scored_check.follows for scored_check in scored] == ["", "", ""]
+    assert earned(scored) == [
+        0,
+        0,
+        4,
+    ]
+    assert scored[2].message == ""
     same = [replace(check, kind="late") for check in (replace(a, hidden=True), b)]
-    assert [one.follows for one in attribute_failures(same, {})] == ["", ""]
+    assert [scored_check.follows for scored_check in attribute_failures(same, {})] == ["", ""]
 
 
 @pytest.mark.parametrize(
@@ -156,11 +165,13 @@ def test_a_hidden_check_is_never_a_cause_or_a_consequence():
 def test_two_failures_share_a_cause_if_both_timed_out_or_have_the_same_message(
     first, second, follows
 ):
-    each = [
-        replace(one, kind=kind, message=said)
-        for one, (kind, said) in zip(checks("fails", "fails"), (first, second), strict=True)
+    failures = [
+        replace(scored_check, kind=kind, message=message)
+        for scored_check, (kind, message) in zip(
+            checks("fails", "fails"), (first, second), strict=True
+        )
     ]
-    assert [one.follows for one in attribute_failures(each, {})] == [
+    assert [scored_check.follows for scored_check in attribute_failures(failures, {})] == [
         "",
         "Promise a" if follows else "",
     ]

@@ -28,7 +28,7 @@ def place(tmp_path, monkeypatch):
 
 
 def sleeper(place):
-    """Start a process that holds such a folder, and return it with the folder."""
+    """Start a process that holds a temporary folder, and return the process and the folder."""
     environment = os.environ | {"TMPDIR": str(place)}
     process = subprocess.Popen(
         [sys.executable, "-c", SLEEPER], env=environment, stdout=subprocess.PIPE

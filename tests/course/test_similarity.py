@@ -33,10 +33,10 @@ NOW = datetime(2026, 10, 20, tzinfo=UTC)
 MADE_APART = sorted((materials.folder("tests") / "equivalent").glob("*.py"))
 if not MADE_APART:
     pytest.skip("no model solution is part of the source distribution", allow_module_level=True)
-LOOPS, GAUGE, FLOAT32 = (
-    next(path.read_text() for path in MADE_APART if path.stem == f"hw2_{name}")
-    for name in ("loops", "gauge", "float32")
-)
+SOLUTION_TEXTS = {path.stem: path.read_text() for path in MADE_APART}
+LOOPS = SOLUTION_TEXTS["hw2_loops"]
+GAUGE = SOLUTION_TEXTS["hw2_gauge"]
+FLOAT32 = SOLUTION_TEXTS["hw2_float32"]
 NAMES = {
     "above": "upper",
     "below": "lower",
@@ -49,7 +49,7 @@ NAMES = {
 
 def renamed(text):
     """Return a text with other names, comments and spaces."""
-    text = re.sub(r"\b(" + "|".join(NAMES) + r")\b", lambda found: NAMES[found[1]], text)
+    text = re.sub(r"\b(" + "|".join(NAMES) + r")\b", lambda match: NAMES[match[1]], text)
     text = re.sub(
         r"^( +)(for|return)", r"\1# my own idea, step by step\n\1\2", text, flags=re.MULTILINE
     )
@@ -57,7 +57,7 @@ def renamed(text):
 
 
 def reordered(text):
-    """Return a text whose functions come in another order."""
+    """Return a text with its functions in another order."""
     return "import numpy as np\n\n" + "\n\n".join(reversed(re.split(r"\n(?=# %%|def )", text)))
 
 
@@ -73,14 +73,14 @@ def work(folder, team, text):
 
 
 def likeness(folder, **texts):
-    each = list(comparison.fingerprint_steps(work(folder, *one) for one in texts.items()))
+    works = list(comparison.fingerprint_steps(work(folder, *file) for file in texts.items()))
     return comparison.compare(
-        each, student_code.handout_code("hw2"), "\n\n".join(library().values())
+        works, student_code.handout_code("hw2"), "\n\n".join(library().values())
     )
 
 
 def written(folder, texts):
-    """Return page and table about a class that has handed in these texts."""
+    """Return the similarity page and table of a class that has submitted these texts."""
     handins = {}
     for n, (team, text) in enumerate(texts.items()):
         path = folder / f"{n}_hw2.py"
@@ -91,22 +91,22 @@ def written(folder, texts):
 
 
 def tags(text):
-    found = []
+    names = []
     reader = HTMLParser()
-    reader.handle_starttag = lambda tag, attrs: found.append((tag, dict(attrs)))
+    reader.handle_starttag = lambda tag, attrs: names.append((tag, dict(attrs)))
     reader.feed(text)
-    return found
+    return names
 
 
 @pytest.mark.parametrize("change", [renamed, reordered, lambda text: reordered(renamed(text))])
 def test_a_copy_is_found_behind_other_names_comments_spaces_and_order(change, tmp_path):
-    found = likeness(tmp_path, a=LOOPS, b=change(LOOPS), c=GAUGE)
-    [pair] = found.pairs
+    report_found = likeness(tmp_path, a=LOOPS, b=change(LOOPS), c=GAUGE)
+    [pair] = report_found.pairs
     assert (pair.first, pair.second) == (0, 1)
     assert pair.fraction > 0.95
     rows = {
         row.task: min(row.first_in_second, row.second_in_first)
-        for row in report.compare_tasks(found, found.pairs[0])
+        for row in report.compare_tasks(report_found, report_found.pairs[0])
     }
     assert set(rows) == {"", "gsolve", "irradiance", "update", "recover_steps", "recover"}
     assert min(rows.values()) > 0.9
@@ -115,40 +115,42 @@ def test_a_copy_is_found_behind_other_names_comments_spaces_and_order(change, tm
 def test_one_function_that_was_copied_is_found_among_others_that_were_not(tmp_path):
     gsolve = re.search(r"(?s)def gsolve.*?(?=\n# %%)", renamed(LOOPS))[0]
     mixed = re.sub(r"(?s)def gsolve.*?(?=\n# %%)", lambda _: gsolve, GAUGE)
-    found = likeness(tmp_path, a=LOOPS, b=mixed)
-    together, *each = report.compare_tasks(found, found.pairs[0])
+    report_found = likeness(tmp_path, a=LOOPS, b=mixed)
+    together, *others = report.compare_tasks(report_found, report_found.pairs[0])
     assert (
         max(together.first_in_second, together.second_in_first) < comparison.MIN_LISTED_FRACTION
     )  # all tasks together do not tell
-    assert [row.task for row in each if row.first] == ["gsolve"] and found.pairs[0].fraction > 0.95
+    assert [row.task for row in others if row.first] == ["gsolve"]
+    assert report_found.pairs[0].fraction > 0.95
 
 
 @pytest.mark.parametrize("homework", ["hw1", "hw2", "hw3", "hw4", "project"])
 def test_solutions_that_were_written_apart_are_far_below_the_threshold(homework):
-    asked = plan.read().homeworks[homework]
-    tasks = [task.id for task in asked.tasks]
+    homework_plan = plan.read().homeworks[homework]
+    tasks = [task.id for task in homework_plan.tasks]
     paths = [path for path in MADE_APART if path.stem.startswith(homework)]
     works = [student_code.read(path.stem, path, homework, tasks) for path in paths]
-    assert len(works) >= 3 and all(one.texts and not one.notes for one in works)
-    blocks = inline.inlined({task.id: task.function for task in asked.tasks}).values()
+    assert len(works) >= 3 and all(work.texts and not work.notes for work in works)
+    blocks = inline.inlined({task.id: task.function for task in homework_plan.tasks}).values()
     text = "\n\n".join(block.text for block in blocks)
-    found = comparison.compare(
+    similarity_report = comparison.compare(
         list(comparison.fingerprint_steps(works)), student_code.handout_code(homework), text
     )
-    assert found.counts[3:].sum() == 0 and not found.pairs  # the page says: less than 30 percent
-    assert homework == "project" or found.counts.sum() >= 3
+    assert similarity_report.counts[3:].sum() == 0
+    assert not similarity_report.pairs  # the page says: less than 30 percent
+    assert homework == "project" or similarity_report.counts.sum() >= 3
 
 
 def test_team_mates_are_not_compared(tmp_path):
     mates = [work(tmp_path, "a", LOOPS), work(tmp_path, "b", LOOPS)._replace(team="a")]
-    found = comparison.compare(list(comparison.fingerprint_steps(mates)))
-    assert not found.pairs and found.counts.sum() == 0
+    similarity_report = comparison.compare(list(comparison.fingerprint_steps(mates)))
+    assert not similarity_report.pairs and similarity_report.counts.sum() == 0
 
 
 def test_code_of_the_handout_is_not_compared(tmp_path):
     blank = "\n\n".join(student_code.handout_code("hw2"))
-    found = likeness(tmp_path, a=blank, b=blank)
-    assert found.counts.sum() == 0 and not any(found.own.values())
+    report_found = likeness(tmp_path, a=blank, b=blank)
+    assert report_found.counts.sum() == 0 and not any(report_found.own.values())
     solved = (
         "def gsolve(Z, B, smoothness, w):\n    return Solution(Z, B)"  # the handout's own class
     )
@@ -172,13 +174,17 @@ def test_a_copy_of_the_library_is_reported_separately_and_not_as_a_pair(tmp_path
 
 def test_the_similarities_of_all_pairs_equal_those_of_copydetect(tmp_path):
     texts = [LOOPS, GAUGE, FLOAT32, renamed(LOOPS), "def hat(n=256):\n    return 1\n"]
-    given = comparison.fingerprint("\n\n".join(student_code.handout_code("hw2"))).hashes
+    handout_hashes = comparison.fingerprint("\n\n".join(student_code.handout_code("hw2"))).hashes
     for task in ("gsolve", "recover", "update"):
         works = [
             work(tmp_path, f"w{n}", text).texts.get(task, "pass\n") for n, text in enumerate(texts)
         ]
-        prints = [comparison.without(comparison.fingerprint(text), given) for text in works]
-        expected = [[compare_files(one, other)[0] for other in prints] for one in prints]
+        prints = [
+            comparison.without(comparison.fingerprint(text), handout_hashes) for text in works
+        ]
+        expected = [
+            [compare_files(fingerprint, other)[0] for other in prints] for fingerprint in prints
+        ]
         assert np.array_equal(comparison.covered(prints), expected)
         assert expected[0][3] > 100 and expected[0][4] == 0
 
@@ -191,7 +197,7 @@ def test_a_repeated_passage_counts_twice():
 
 
 @pytest.mark.parametrize(
-    ("said", "text"),
+    ("message", "text"),
     [
         ("none of the tasks can be read", "def gsolve(Z, B:\n"),
         ("none of the tasks can be read", "def gsolve():\n    return '\0'\n"),
@@ -211,10 +217,10 @@ def test_a_repeated_passage_counts_twice():
         ("gsolve has more than 30,000", "def gsolve():\n    return [" + "1," * 20_000 + "]\n"),
     ],
 )
-def test_a_broken_or_hostile_file_is_reported_and_the_others_are_compared(said, text, tmp_path):
+def test_a_broken_or_hostile_file_is_reported_and_the_others_are_compared(message, text, tmp_path):
     page, table = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS), "x": text})
     assert [(row["one"], row["other"]) for row in table] == [("a", "b")]
-    assert re.search(f"<li><b>x</b>: [^\n]*{said}", page)
+    assert re.search(f"<li><b>x</b>: [^\n]*{message}", page)
 
 
 def test_empty_lines_are_removed_because_copydetect_takes_quadratic_time_in_them():
@@ -233,14 +239,12 @@ def test_the_code_of_all_tasks_together_is_limited(tmp_path):
     body = "\n".join(f"    x{k} = {k}" for k in range(1_500))
     (tmp_path / "hw2.py").write_text("\n".join(f"def {name}():\n{body}\n" for name in names))
     work = student_code.read("x", tmp_path / "hw2.py", "hw2", names)
-    assert (
-        list(work.texts) == names[:4]
-        and "recover has more than 30,000 characters, or" in work.notes[0]
-    )
+    assert list(work.texts) == names[:4]
+    assert "recover has more than 30,000 characters, or" in work.notes[0]
 
 
 def calls_of(act):
-    """Return what an action makes, and how many functions it calls meanwhile: a cost without a clock."""
+    """Return the result of an action, and the number of function calls as its cost."""
     calls = []
     sys.setprofile(lambda frame, event, argument: calls.append(event) if "call" in event else None)
     try:
@@ -257,17 +261,16 @@ def test_twice_as_many_changes_of_a_name_take_about_twice_as_long():
             lambda: closure.extract_sources([cell], ["gsolve"])[0]["gsolve"].count("append")
         )
 
-    (some, cost), (more, larger) = read(400), read(800)
+    some, cost = read(400)
+    more, larger = read(800)
     assert (some, more) == (400, 800) and larger < 2.5 * cost
 
 
 def test_code_is_split_into_statements_as_python_parses_it():
     text = "µ = 'µ'; b = µ\r\nc = '\x0c' + b  # a form feed ends no line\rdef gsolve(): return c\n"
-    sources, said = closure.extract_sources([closure.Cell(text)], ["gsolve"])
-    assert (
-        sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n"
-        and not said
-    )
+    sources, problems = closure.extract_sources([closure.Cell(text)], ["gsolve"])
+    assert sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n"
+    assert not problems
 
 
 def test_names_and_sources_are_escaped_on_the_page(tmp_path):
@@ -276,9 +279,9 @@ def test_names_and_sources_are_escaped_on_the_page(tmp_path):
     page, table = written(
         tmp_path, {script: mean, '"><b onclick="x()">': mean, "=HYPERLINK(1)": mean}
     )
-    found = tags(page)
-    assert not {"script", "b onclick"} & {tag for tag, _ in found}
-    assert not any(name.startswith("on") for _, attributes in found for name in attributes)
+    names = tags(page)
+    assert not {"script", "b onclick"} & {tag for tag, _ in names}
+    assert not any(name.startswith("on") for _, attributes in names for name in attributes)
     assert "\u202e" not in page and "\x1b" not in page and page.count("&lt;/pre&gt;") == 6
     assert len(table) == 3 and sum(row["other"] == "'=HYPERLINK(1)" for row in table) == 2
     assert "default-src 'none'" in page
@@ -358,7 +361,7 @@ def test_an_empty_class_and_unrelated_submissions_make_a_page(tmp_path):
 
 
 def compared(folder, capsys):
-    """Return what the command says when a class of two is compared."""
+    """Return the output of the command for a class of two."""
     (folder / "a.py").write_text(LOOPS)
     handins = {team: Submission(team, (team,), folder / "a.py", NOW, "digest") for team in "ab"}
     course = classroom.GradingContext(Roster(()), HW2, GradingOptions())
@@ -383,6 +386,6 @@ def test_without_copydetect_a_line_says_what_to_install(tmp_path, monkeypatch, c
     for name in ("report", "comparison"):
         monkeypatch.delitem(sys.modules, f"hdrlab.course.similarity.{name}")
         monkeypatch.delattr(f"hdrlab.course.similarity.{name}")
-    said = compared(tmp_path, capsys)
-    assert 'similar.html needs copydetect: pip install "hdrlab[class]"' in said
+    output = compared(tmp_path, capsys)
+    assert 'similar.html needs copydetect: pip install "hdrlab[class]"' in output
     assert not (tmp_path / "similar.html").exists()

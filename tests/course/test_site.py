@@ -57,7 +57,7 @@ SHOWN = """pictures.radiance(E, alt="The wedge in false colour")"""
 
 
 def notebook(path, title, *cells):
-    """Write a notebook of a title, a formula, a link to the other one, and cells of code."""
+    """Write a notebook with a title, a formula, a link to another notebook, and cells of code."""
     words = (
         f"# {title}\n\nRun the cells from the top. So $g(Z) = \\ln E$, see [one](01_one.ipynb) and "
         "[three](03_three.ipynb).\n\n$$x^2$$"
@@ -76,12 +76,13 @@ def notebook(path, title, *cells):
 def command(out, *notebooks):
     return [
         *(sys.executable, "-m", "hdrlab", "site", "--out", str(out), "--address", ADDRESS),
-        *(word for one in notebooks for word in ("--notebooks", str(one))),
+        *(word for notebook in notebooks for word in ("--notebooks", str(notebook))),
     ]
 
 
 def run(out, *notebooks, folder, **environment):
-    words, env = command(out, *notebooks), os.environ | environment
+    words = command(out, *notebooks)
+    env = os.environ | environment
     return subprocess.run(
         words, cwd=folder, env=env, capture_output=True, text=True, timeout=PATIENCE
     )
@@ -89,9 +90,8 @@ def run(out, *notebooks, folder, **environment):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A site of four notebooks, one without a title and pictures, in a folder of its own.
-
-    As (folder, site, the notebooks, what was said). It is made where much is lacking.
+    """A site of four notebooks, one without a title and pictures: (folder, site, notebooks, output). It
+    is made in an environment in which much is missing.
     """
     folder = tmp_path_factory.mktemp("made") / "site"
     folder.mkdir()
@@ -112,8 +112,8 @@ def made(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def found(made):
-    """Its pages, each with its addresses."""
+def page_addresses(made):
+    """The addresses in each page of the site."""
     return pages(made[1])
 
 
@@ -128,12 +128,16 @@ def test_a_link_leads_to_what_the_site_has_and_is_plain_text_otherwise():
 
 
 class Addresses(HTMLParser):
-    """What a page asks for, what it links to, and pictures without alt text."""
+    """The resources and links of a page, and its pictures without alt text."""
 
     def __init__(self, text):
         super().__init__()
-        self.asked, self.links, self.silent, self.headings = [], [], [], []
-        self.anchors, self.told = set(), {}
+        self.asked = []
+        self.links = []
+        self.silent = []
+        self.headings = []
+        self.anchors = set()
+        self.told = {}
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
@@ -175,7 +179,7 @@ def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_
     assert sorted(folder.iterdir()) == sorted([site, folder / ".site.cache", *notebooks])
     assert not list((folder / ".site.cache" / "kernels").iterdir())
     assert not [path for path in folder.rglob("*") if path.name.startswith((".hdrlab-", "tmp"))]
-    assert all(one.stat().st_mtime == 4e9 for one in notebooks), "a notebook was written"
+    assert all(notebook.stat().st_mtime == 4e9 for notebook in notebooks), "a notebook was written"
 
 
 def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
@@ -191,9 +195,9 @@ def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
 
 def test_a_page_has_a_description_and_an_image_for_link_previews(made):
     site = made[1]
-    told = Addresses((site / "index.html").read_text("utf-8")).told
-    assert len(told["description"]) > 40
-    assert told["og:image"] == f"{ADDRESS}/_static/preview.jpg"
+    metadata = Addresses((site / "index.html").read_text("utf-8")).told
+    assert len(metadata["description"]) > 40
+    assert metadata["og:image"] == f"{ADDRESS}/_static/preview.jpg"
     preview = decode_picture((site / "_static" / "preview.jpg").read_bytes())
     middle = preview.shape[1] // 2
     above = preview[int(0.08 * len(preview)) : int(0.2 * len(preview))]
@@ -202,13 +206,13 @@ def test_a_page_has_a_description_and_an_image_for_link_previews(made):
     assert sky[0].mean() > 245, "the photo at the left is clipped in the window"
     assert sky[1][..., 0].mean() < 215, "the image at the right shows a blue sky"
     for page in ("verdicts", "commands", "reference/tonemap.chiu"):
-        told = Addresses((site / f"{page}.html").read_text("utf-8")).told
-        assert 40 < len(told["description"]) <= 200, page
+        metadata = Addresses((site / f"{page}.html").read_text("utf-8")).told
+        assert 40 < len(metadata["description"]) <= 200, page
 
 
-def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(found):
-    assert len(found) > 100
-    for page, addresses in found.items():
+def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(page_addresses):
+    assert len(page_addresses) > 100
+    for page, addresses in page_addresses.items():
         for address in addresses.asked:
             if not address.startswith("data:"):
                 assert not re.match(r"\w+:|//", address), f"{page.name}: {address}"
@@ -230,8 +234,8 @@ def test_style_sheets_and_scripts_name_no_address_outside(made):
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
 
-def test_every_link_within_the_site_leads_to_a_page_and_a_place_on_it(found):
-    for page, addresses in found.items():
+def test_every_link_within_the_site_leads_to_a_page_and_a_place_on_it(page_addresses):
+    for page, addresses in page_addresses.items():
         for link in addresses.links:
             path, _, anchor = link.partition("#")
             path = path.partition("?")[0]
@@ -239,11 +243,11 @@ def test_every_link_within_the_site_leads_to_a_page_and_a_place_on_it(found):
                 continue
             target = (page.parent / path).resolve() if path else page
             assert target.is_file(), f"{page.name}: {link}"
-            assert not anchor or anchor in found[target].anchors, f"{page.name}: {link}"
+            assert not anchor or anchor in page_addresses[target].anchors, f"{page.name}: {link}"
 
 
-def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(found):
-    for page, addresses in found.items():
+def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(page_addresses):
+    for page, addresses in page_addresses.items():
         assert not addresses.silent, page.name
         assert addresses.headings.count(1) == 1, page.name
         steps = zip(addresses.headings, addresses.headings[1:], strict=False)
@@ -272,13 +276,13 @@ def test_without_scripts_the_story_has_a_picture_for_each_figure_and_no_code(mad
 def test_the_story_is_readable_after_300_kB_and_has_less_than_4_MB_in_all(made):
     """Its words, its style and the images that stand in the figures' places; then the figures."""
     page = made[1] / "story.html"
-    asked = {
+    addresses = {
         page,
-        *(page.parent / one.partition("?")[0] for one in Addresses(story_of(made)).asked),
+        *(page.parent / address.partition("?")[0] for address in Addresses(story_of(made)).asked),
     }
     figures = re.findall(r'data-(?:code|from)="([^"]+)"', story_of(made))
-    everything = asked | {page.parent / name for name in figures}
-    assert sum(file.stat().st_size for file in asked) < 300_000
+    everything = addresses | {page.parent / name for name in figures}
+    assert sum(file.stat().st_size for file in addresses) < 300_000
     assert sum(file.stat().st_size for file in everything) < 4_000_000
 
 
@@ -307,8 +311,8 @@ def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):
     assert "and three." in text and "03_three" not in text
 
 
-def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(made, found):
-    links = found[made[1] / "map.html"].links
+def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(made, page_addresses):
+    links = page_addresses[made[1] / "map.html"].links
     assert "reference/tonemap.ward.html#hdrlab.tonemap.ward.tonemap" in links
     assert "reference/core.filters.bilateral.html#module-hdrlab.core.filters.bilateral" in links
     assert "notebooks/01_one.html" in links
@@ -331,15 +335,15 @@ def test_a_page_of_the_reference_has_the_legend_the_parameters_and_the_source(ma
 
 
 def test_a_cell_that_is_folded_in_jupyterlab_is_folded_on_its_page_with_its_picture_below(made):
-    one, two = (
-        (made[1] / f"notebooks/{name}.html").read_text("utf-8") for name in ("01_one", "02_two")
-    )
-    assert "<details" not in one and two.count("<details") == 1
-    before, _, folded = two.partition("<details")
+    page_without = (made[1] / "notebooks/01_one.html").read_text("utf-8")
+    page_with = (made[1] / "notebooks/02_two.html").read_text("utf-8")
+    assert "<details" not in page_without and page_with.count("<details") == 1
+    before, _, folded = page_with.partition("<details")
     code, _, after = folded.partition("</details>")
-    assert (
-        "widgets" in before and "Show the code" in code and "pictures" in code and "<img" in after
-    )
+    assert "widgets" in before
+    assert "Show the code" in code
+    assert "pictures" in code
+    assert "<img" in after
 
 
 def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
@@ -365,14 +369,13 @@ def test_an_unchanged_notebook_is_not_built_again(made):
 
 
 def test_the_pages_of_a_notebook_that_is_gone_are_removed(made, tmp_path):
-    """In its place, for elsewhere Sphinx would read all pages again; it is put back, for others read it."""
-    folder, site, (one, two, _, plain), _ = made
-    assert (site / "notebooks" / "03_gone.html").exists() and list(
-        (site / "_widgets").glob("03_gone*")
-    )
+    """The test uses the shared folder, so that Sphinx need not read all pages again, and restores it."""
+    folder, site, (first, second, _, plain), _ = made
+    assert (site / "notebooks" / "03_gone.html").exists()
+    assert list((site / "_widgets").glob("03_gone*"))
     whole = shutil.copytree(folder, tmp_path / "whole")
     try:
-        ran = run("site", one, two, plain, folder=folder)
+        ran = run("site", first, second, plain, folder=folder)
         assert ran.returncode == 0 and "run now: 0" in ran.stdout and ran.stderr == ""
         assert not (site / "notebooks" / "03_gone.html").exists()
         assert not list((site / "_widgets").glob("03_gone*"))
@@ -383,7 +386,9 @@ def test_the_pages_of_a_notebook_that_is_gone_are_removed(made, tmp_path):
 
 
 def test_a_build_that_was_killed_is_made_again_from_the_executed_notebooks(made, tmp_path):
-    """In its place, as a kill leaves it: half of a file of Sphinx, and no record of a whole build."""
+    """The test leaves the folder as a kill does: half of a file of Sphinx, and no record of a complete
+    build.
+    """
     folder, site, notebooks, _ = made
     cache = folder / ".site.cache"
     whole = shutil.copytree(folder, tmp_path / "whole")
@@ -415,8 +420,10 @@ def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
     assert not (tmp_path / "site" / "index.html").exists()
 
 
-def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(made, found):
-    front = found[made[1] / "index.html"]
+def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(
+    made, page_addresses
+):
+    front = page_addresses[made[1] / "index.html"]
     assert "notebooks/plain.html" in front.links
     assert "Plain &amp; simple" in (made[1] / "notebooks" / "plain.html").read_text("utf-8")
 
@@ -425,23 +432,25 @@ def test_the_pictures_of_a_page_are_files_that_are_fetched_as_they_come_into_vie
     page = made[1] / "notebooks" / "02_two.html"
     shown, still = re.findall(r"<img [^>]+>", page.read_text("utf-8"))
     assert 'loading="lazy"' in shown and 'loading="lazy"' in still
-    asked = dict(re.findall(r'(\w+)="([^"]*)"', shown))
-    height, width = decode_picture((page.parent / asked["src"]).read_bytes()).shape[:2]
-    assert (asked["width"], asked["height"]) == (str(width), str(height)) and asked["alt"]
+    attributes = dict(re.findall(r'(\w+)="([^"]*)"', shown))
+    height, width = decode_picture((page.parent / attributes["src"]).read_bytes()).shape[:2]
+    assert (attributes["width"], attributes["height"]) == (str(width), str(height))
+    assert attributes["alt"]
     assert "data:image" not in page.read_text("utf-8")
 
 
 def test_a_photograph_in_a_cells_html_is_a_file_to_the_byte(tmp_path):
-    """One with a gain map lights up only so."""
+    """Otherwise a photo with a gain map would lose the map."""
     taken = web.encode_jpeg(np.full((8, 12), 90, np.uint8)) + b"and its gain map"
     shown = {"text/html": f'<img alt="A room" src="{web.data_uri(taken, "jpeg")}">'}
     output = nbformat.v4.new_output("display_data", data=shown)
     cells = [nbformat.v4.new_code_cell("room", outputs=[output])]
-    live.extract_images(one := nbformat.v4.new_notebook(cells=cells), "room", tmp_path, "../apart")
+    notebook = nbformat.v4.new_notebook(cells=cells)
+    live.extract_images(notebook, "room", tmp_path, "../apart")
     assert (tmp_path / "room-p1.jpeg").read_bytes() == taken
     assert (
         'src="../apart/room-p1.jpeg" width="12" height="8"'
-        in one.cells[0].outputs[0]["data"]["text/html"]
+        in notebook.cells[0].outputs[0]["data"]["text/html"]
     )
 
 
@@ -450,12 +459,12 @@ def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_t
     bitmap = np.uint8(255) * (photograph.mean(axis=-1) > 128)
     exact = [web.encode_webp(picture, lossless=True) for picture in (photograph, bitmap)]
     apart = [
-        {"path": ["pictures", k], "data": base64.b64encode(each).decode()}
-        for k, each in enumerate(exact)
+        {"path": ["pictures", k], "data": base64.b64encode(pixels).decode()}
+        for k, pixels in enumerate(exact)
     ]
     state = {"_esm": "", "scales": [], "pictures": [None, None], "alt": "A room"}
     shown = live.export_widget({"state": state, "buffers": apart}, "room-1").state["pictures"]
-    light = [base64.b64decode(each["base64"]) for each in shown]
+    light = [base64.b64decode(pixels["base64"]) for pixels in shown]
     assert len(light[0]) < len(exact[0]) * 2 / 3
     assert np.abs(web.decode_picture(light[0]).astype(int) - photograph).mean() < 2
     assert light[1] == exact[1]
@@ -466,10 +475,10 @@ def test_a_dark_page_turns_plots_about_and_leaves_photographs_and_maps_their_col
     line = curves.lines(np.arange(9), {"nine": np.arange(9)}, across="place", up="light")
     slope = tones.maps({"": np.indices((64, 96))[0] - 32}, label="stops", signed=True)
     shown = [
-        live.ExportedWidget("", "", "", {}, pictures.encode(each), "").as_html("")
-        for each in (line, slope, photograph)
+        live.ExportedWidget("", "", "", {}, pictures.encode(picture), "").as_html("")
+        for picture in (line, slope, photograph)
     ]
-    assert ["data-ink" in each for each in shown] == [True, False, False]
+    assert ["data-ink" in picture for picture in shown] == [True, False, False]
 
 
 def test_notebooks_of_one_name_are_refused(tmp_path):
@@ -484,13 +493,13 @@ def test_a_folder_with_something_else_in_it_is_left_alone(tmp_path):
     (tmp_path / "precious.html").write_text("mine")
     ran = run(tmp_path, folder=tmp_path)
     assert ran.returncode == 2 and str(tmp_path) in ran.stderr
-    assert [one.name for one in tmp_path.iterdir()] == ["precious.html"]
+    assert [file.name for file in tmp_path.iterdir()] == ["precious.html"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send")
 def test_ctrl_c_ends_the_kernels_and_leaves_no_half_notebook(tmp_path):
-    told = tmp_path / "kernel"
-    slow = f"import os, time\nopen({str(told)!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)"
+    file = tmp_path / "kernel"
+    slow = f"import os, time\nopen({str(file)!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)"
     process = subprocess.Popen(
         command(tmp_path / "site", notebook(tmp_path / "slow.ipynb", "Slow", slow)),
         stdout=subprocess.PIPE,
@@ -499,15 +508,15 @@ def test_ctrl_c_ends_the_kernels_and_leaves_no_half_notebook(tmp_path):
     )
     try:
         deadline = time.monotonic() + PATIENCE
-        while not (told.exists() and told.read_text()) and time.monotonic() < deadline:
+        while not (file.exists() and file.read_text()) and time.monotonic() < deadline:
             time.sleep(0.1)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
+        _, errors = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
-    assert process.returncode == 130 and said.strip() == "hdrlab: interrupted"
-    assert not _alive(int(told.read_text()))
-    assert not [one.name for one in (tmp_path / "site").rglob("*.ipynb") if "slow" in one.name]
+    assert process.returncode == 130 and errors.strip() == "hdrlab: interrupted"
+    assert not _alive(int(file.read_text()))
+    assert not [path.name for path in (tmp_path / "site").rglob("*.ipynb") if "slow" in path.name]
 
 
 def _alive(number):
@@ -536,7 +545,7 @@ def test_the_words_of_a_docstring_stay_as_they_are():
 
 
 def test_every_row_of_the_lecture_names_what_there_is():
-    """The map's names are modules of the library, or stand in one."""
+    """Each name in the map is a module of the library, or is defined in one."""
     import importlib
 
     for lecture, where in reference.read_lecture_map():
@@ -586,16 +595,19 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
         for file in (package / room).rglob("*.py")
     ):
         nodes = list(ast.walk(ast.parse(file.read_text("utf-8"))))
-        strings = [one.values for one in nodes if isinstance(one, ast.JoinedStr)]
-        strings += [
-            [one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)
-        ]
+        strings = []
+        for node in nodes:
+            if isinstance(node, ast.JoinedStr):
+                strings.append(node.values)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                strings.append([node])
         for parts in strings:
             printed += (
                 "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts)
                 + "\n"
             )
-    printed += "\n".join(re.sub(r"\{.*?\}", "%", one) for one in doubts.SENTENCES.values())
+    sentences = doubts.SENTENCES.values()
+    printed += "\n".join(re.sub(r"\{.*?\}", "%", sentence) for sentence in sentences)
     for pair in combinations(causes.CAUSES, 2):
         named = " or ".join(doubts.SENTENCES[f"{cause}_cause"] for cause in pair)
         printed += "\n" + doubts.warning_text("either", causes=named, evidence="", advice="")
@@ -644,31 +656,31 @@ def refusal(read, *arguments):
 
 @pytest.mark.parametrize("what", REFUSED)
 def test_the_page_quotes_the_messages_about_photos_word_for_word(what, tmp_path):
-    taken, stated = (
-        scenes.photographs((160, 120)),
-        [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000],
-    )
+    taken = scenes.photographs((160, 120))
+    stated = [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000]
     for j, Z in enumerate(taken.images[::-1], 1):
         halved = j % 2 == 0 and what == "two sizes"  # a half of them: fewer would be left out
         write_picture(tmp_path / f"frame{j}.jpg", Z[::2, ::2] if halved else Z)
-    said = {
-        "one photograph": lambda: refusal(read_bracket, tmp_path / "frame1.jpg"),
-        "times the other way round": lambda: refusal(
-            partial(pipeline.assemble, times="stated"), read_bracket(tmp_path, stated[::-1])
-        ),
-        "two sizes": lambda: refusal(read_bracket, tmp_path, stated),
-    }[what]()
-    assert said.replace(f"{tmp_path}/", "") in quotes_of_the_page_on_warnings()[-len(REFUSED) :]
+    if what == "one photograph":
+        message = refusal(read_bracket, tmp_path / "frame1.jpg")
+    elif what == "times the other way round":
+        taken_backwards = read_bracket(tmp_path, stated[::-1])
+        message = refusal(partial(pipeline.assemble, times="stated"), taken_backwards)
+    else:
+        message = refusal(read_bracket, tmp_path, stated)
+    assert message.replace(f"{tmp_path}/", "") in quotes_of_the_page_on_warnings()[-len(REFUSED) :]
 
 
 def test_the_page_quotes_the_warning_about_the_times_of_the_packaged_photos():
     taken = replace(scenes.photographs((320, 240)), times=1 / np.array([1000, 120, 60, 15, 8, 4]))
-    said = pipeline.assemble(taken).doubts[0].partition(", but")[0]
-    (quote,) = (
-        one
-        for one in quotes_of_the_page_on_warnings()
-        if one.startswith("the stated times") and "not used" in one
-    )
-    assert re.sub(r"[\d.]+", "", said) == re.sub(r"[\d.]+", "", quote)
-    off = [float(re.search(r"[\d.]+", one)[0]) for one in (said, quote)]
-    assert off[0] == pytest.approx(off[1], abs=0.02)  # that of all their pixels is 1.06
+    warning = pipeline.assemble(taken).doubts[0].partition(", but")[0]
+    quotes = quotes_of_the_page_on_warnings()
+    (quote,) = [
+        quote
+        for quote in quotes
+        if quote.startswith("the stated times") and "not used" in quote
+    ]
+    assert re.sub(r"[\d.]+", "", warning) == re.sub(r"[\d.]+", "", quote)
+    printed_error = float(re.search(r"[\d.]+", warning)[0])
+    quoted_error = float(re.search(r"[\d.]+", quote)[0])
+    assert printed_error == pytest.approx(quoted_error, abs=0.02)  # 1.06 with all pixels

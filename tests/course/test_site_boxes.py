@@ -47,11 +47,13 @@ print(check_as_json(sys.argv[1], sys.stdin.read(), "matplotlib" in allowed))
 
 
 class FormParser(HTMLParser):
-    """What a reader finds in a box: its text field, buttons and links."""
+    """The text field, the buttons and the links of a box."""
 
     def __init__(self, html):
         super().__init__()
-        self.field, self.elements, self._inside = "", [], None
+        self.field = ""
+        self.elements = []
+        self._inside = None
         self.feed(html)
 
     def handle_starttag(self, tag, attributes):
@@ -74,7 +76,7 @@ def in_this_process(monkeypatch):
 
 
 def answer(task, text, packages):
-    """Return what a browser with some packages answers to a text."""
+    """Return the answer of a browser with these packages to a text."""
     command = [sys.executable, "-W", "ignore", "-c", WITHOUT, task, " ".join(packages)]
     ran = subprocess.run(command, input=text, cwd=ROOT, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr

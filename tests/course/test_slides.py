@@ -35,7 +35,7 @@ def words(text):
 
 @pytest.fixture(params=NOTEBOOKS, ids=lambda path: path.stem, scope="module")
 def notebook(request):
-    """The cells of a notebook that was not run, and its slides."""
+    """A notebook without outputs, as its cells and its slides."""
     cells = nbformat.read(request.param, 4).cells
     return cells, rule.make_slides(cells)
 
@@ -70,15 +70,15 @@ def test_every_notebook_gives_a_deck_without_being_run(notebook):
 
 def test_each_question_is_on_a_slide_after_what_it_follows_and_before_its_answer(notebook):
     cells, slides = notebook
-    asked = cells_with_questions(cells)
+    question_cells = cells_with_questions(cells)
     places = [
         place
         for place, slide in enumerate(slides)
         if slide.kind is SlideKind.QUESTION and slide.text
     ]
-    assert len(asked) == len(places) > 3
+    assert len(question_cells) == len(places) > 3
     shown = {slide.cell: k for k, slide in enumerate(slides) if slide.cell is not None}
-    for cell, place in zip(asked, places, strict=True):
+    for cell, place in zip(question_cells, places, strict=True):
         assert all(k < place for number, k in shown.items() if number < cell)
         assert all(k >= place for number, k in shown.items() if number > cell)
         answer = slides[place].cell
@@ -160,7 +160,7 @@ def test_a_long_list_and_a_long_table_continue_on_more_slides_and_lose_nothing()
     assert [text.count(f"\n{row}") for row in rows] == [1] * 40
     assert all(item.strip() in text for item in items)
     tables = [slide.text for slide in slides if slide.heading == "Letters"]
-    assert all(each.startswith("| a | b | c |\n|---|---|---|\n") for each in tables)
+    assert all(text.startswith("| a | b | c |\n|---|---|---|\n") for text in tables)
 
 
 def test_a_prediction_is_made_on_the_slide_of_its_question():
@@ -223,9 +223,9 @@ def test_a_notebook_that_is_not_there_is_refused_with_the_nearest_names(
 ):
     with pytest.raises(SystemExit) as stop:
         cli.run(["course", "slides", name, "-o", str(tmp_path / "slides")])
-    said = capsys.readouterr().err
-    assert stop.value.code == 2 and said.count("\n") == 1
-    assert name in said and near in said
+    errors = capsys.readouterr().err
+    assert stop.value.code == 2 and errors.count("\n") == 1
+    assert name in errors and near in errors
     assert not list(tmp_path.iterdir())
 
 
@@ -248,7 +248,7 @@ ANSWER = "<details><summary>Why?</summary>\n\nThe last, </script> $k = 4$.\n\n</
 def write_notebook(path, *code):
     """Write a notebook of a text with an equation and a question, code, and a folded answer."""
     cells = [nbformat.v4.new_markdown_cell(TEXT)]
-    cells += [nbformat.v4.new_code_cell(each) for each in code]
+    cells += [nbformat.v4.new_code_cell(source) for source in code]
     cells.append(nbformat.v4.new_markdown_cell(ANSWER))
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
     nbformat.write(nbformat.v4.new_notebook(cells=cells, metadata=kernel), path)
@@ -274,7 +274,7 @@ def deck(tmp_path_factory):
 
 
 class Page(HTMLParser):
-    """What a page loads, its links, its sections, and the text of its notes."""
+    """The resources, links and sections of a page, and the text of its notes."""
 
     def __init__(self, text):
         super().__init__()
@@ -307,12 +307,12 @@ class Page(HTMLParser):
 @pytest.mark.notebooks
 def test_a_deck_is_one_file_that_refers_to_nothing_outside(deck):
     folder, path, printed = deck
-    assert [each.name for each in path.parent.iterdir()] == ["01_steps.html"]
+    assert [file.name for file in path.parent.iterdir()] == ["01_steps.html"]
     text = path.read_text("utf-8")
     page = Page(text)
     styles = "".join(re.findall(r"<style>.*?</style>", text, re.DOTALL))
     assert styles and page.loaded
-    assert [each for each in page.loaded if not each.startswith(("data:", "#"))] == []
+    assert [file for file in page.loaded if not file.startswith(("data:", "#"))] == []
     assert not re.search(r"@import|url\(\s*['\"]?(?!data:)", styles)
     assert "02_two.ipynb" not in text and page.silent == []
     assert f"{page.sections} slides" in printed
@@ -330,7 +330,7 @@ def test_a_second_run_executes_nothing_and_writes_the_same_deck(deck):
     before = path.read_bytes()
     ran = run(folder, "01_steps.ipynb", "-o", "decks")
     assert "run now: 0" in ran.stdout and path.read_bytes() == before
-    assert {each.name for each in folder.iterdir()} == {"01_steps.ipynb", "decks", ".decks.cache"}
+    assert {file.name for file in folder.iterdir()} == {"01_steps.ipynb", "decks", ".decks.cache"}
 
 
 @pytest.mark.notebooks

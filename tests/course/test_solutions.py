@@ -24,8 +24,8 @@ def test_the_pack_has_a_notebook_and_a_file_for_each_homework_and_a_table_of_the
     table = (pack / "README.md").read_text()
     assert all(
         f"| `{task.id}` | {task.points:g} |" in table
-        for one in PLAN.homeworks.values()
-        for task in one.tasks
+        for homework in PLAN.homeworks.values()
+        for task in homework.tasks
     )
 
 
@@ -40,7 +40,9 @@ def test_the_solutions_run_without_the_library(pack, name):
 @pytest.mark.parametrize("task", ["hat", "bound", "compress", "pq"])
 def test_every_solution_passes_every_check(pack, task):
     (name,) = [
-        name for name, one in PLAN.homeworks.items() if task in [own.id for own in one.tasks]
+        name
+        for name, homework in PLAN.homeworks.items()
+        if task in [own.id for own in homework.tasks]
     ]
     scope = {"__name__": "pack"}
     exec((pack / f"{name}.py").read_text(), scope)

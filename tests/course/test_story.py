@@ -24,17 +24,18 @@ TOUCHED = {
 
 @pytest.fixture(scope="module")
 def names():
-    """What the cells of the story make, by name."""
-    found = {"display": lambda *figures: None}
+    """The names that the cells of the story define."""
+    namespace = {"display": lambda *figures: None}
     for cell in STORY.cells:
         if cell.cell_type == "code":
-            exec(compile(cell.source, cell.id, "exec"), found)
-    return found
+            exec(compile(cell.source, cell.id, "exec"), namespace)
+    return namespace
 
 
 def gain_stops(n, place):
-    """Return by how many stops the best screen shows a place brighter than an ordinary one."""
-    base, best = (n["colour"].luminance(n[name])[place] for name in ("s", "hdr"))
+    """Return how many stops brighter the best screen shows a place than an ordinary one."""
+    base = n["colour"].luminance(n["s"])[place]
+    best = n["colour"].luminance(n["hdr"])[place]
     return float(np.median(np.log2(best / base)))
 
 
@@ -50,7 +51,7 @@ def deciding_photo(n, place):
 
 
 def slope_between(n, low, high):
-    """Return levels per stop of the response curve."""
+    """Return the pixel values per stop of the response curve."""
     g = n["g"][:, 1] / np.log(2)
     return (high - low) / (g[high] - g[low])
 

@@ -13,7 +13,7 @@ from hdrlab.course.checks import subject as module
 
 @pytest.fixture
 def opened(monkeypatch):
-    """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
+    """opened(answers...) -> a Subject with one task, f, and its FakeSession."""
     return partial(fake_student_process.open_subject, monkeypatch)
 
 
@@ -70,7 +70,7 @@ def test_recorded_answers_have_a_limited_total_size(opened, monkeypatch):
     with subject:
         for _ in sizes:
             subject.f()
-        assert [None if one.answer is None else one.answer.size for one in subject.calls] == [
+        assert [None if call.answer is None else call.answer.size for call in subject.calls] == [
             40,
             None,
             60,
@@ -91,11 +91,11 @@ def test_printed_text_is_cut_to_its_first_characters(opened, monkeypatch):
         answer_with(1, "mn"),
     )
     with subject:
-        said = []
+        printed = []
         for _ in range(4):
             subject.f()
-            said.append(subject.printed)
-        assert said == ["abcd", "abcdefgh", "abcdefghij", "abcdefghij"]
+            printed.append(subject.printed)
+        assert printed == ["abcd", "abcdefgh", "abcdefghij", "abcdefghij"]
         subject.fresh()
         assert subject.printed == ""
 
@@ -128,8 +128,8 @@ def test_printed_text_is_cut_to_its_first_characters(opened, monkeypatch):
 def test_a_malformed_message_is_not_accepted_as_an_answer(answer, why, opened):
     subject, _ = opened((0, answer))
     with subject:
-        kind, said = missing_answer(subject)
-        assert kind == "damaged" and said.startswith("f ") and why in said
+        kind, message = missing_answer(subject)
+        assert kind == "damaged" and message.startswith("f ") and why in message
 
 
 def test_an_answer_sent_before_the_call_is_refused(opened):
@@ -145,7 +145,7 @@ def test_an_answer_sent_before_the_call_is_refused(opened):
 
 
 @pytest.mark.parametrize(
-    ("told", "said"),
+    ("raised", "message"),
     [
         (
             {"error": "ValueError", "message": "no", "text": "x = 1", "line": 3},
@@ -157,10 +157,10 @@ def test_an_answer_sent_before_the_call_is_refused(opened):
         ({"error": "E", "message": "m", "text": "", "line": None}, "E: m"),
     ],
 )
-def test_an_exception_is_reported_with_its_line(told, said, opened):
-    subject, _ = opened((0, ("raised", ("", told))))
+def test_an_exception_is_reported_with_its_line(raised, message, opened):
+    subject, _ = opened((0, ("raised", ("", raised))))
     with subject:
-        assert missing_answer(subject) == ("raised", f"f raised {said}")
+        assert missing_answer(subject) == ("raised", f"f raised {message}")
 
 
 def test_an_unsupported_value_is_reported_by_its_type(opened):

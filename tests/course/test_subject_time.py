@@ -13,7 +13,7 @@ KILL = 9
 
 @pytest.fixture
 def opened(monkeypatch):
-    """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
+    """opened(answers...) -> a Subject with one task, f, and its FakeSession."""
     return partial(fake_student_process.open_subject, monkeypatch)
 
 
@@ -68,7 +68,7 @@ def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered
 
 
 @pytest.mark.parametrize(
-    ("error", "ended", "used", "forks", "kind", "said"),
+    ("error", "ended", "used", "forks", "kind", "text"),
     [
         (EOFError(), KILL, 1.5, True, "late", "2 s of processor time"),
         (EOFError(), KILL, 1.499, True, "killed", "ended"),
@@ -95,12 +95,12 @@ def test_the_processor_time_of_a_submission_is_that_of_four_calls(left, answered
     ],
 )
 def test_a_missing_answer_is_explained_by_how_the_process_ended(
-    error, ended, used, forks, kind, said, opened
+    error, ended, used, forks, kind, text, opened
 ):
     subject, session = opened((4.0, error), answer_with(1), ended=ended, used=used, forks=forks)
     with subject:
-        found, message = missing_answer(subject)
-        assert found == kind and message.startswith("f ") and said in message
+        answer, message = missing_answer(subject)
+        assert answer == kind and message.startswith("f ") and text in message
         assert session.links[0].closed and session.cleared == [1.0] and subject.seconds_left == 196
         subject.f()
         assert len(session.links) == 2

@@ -18,20 +18,26 @@ def notebook(*cells, **more):
     """Return a notebook as text; a cell is its source, (source, task), or (source, None) for a given one."""
     listed = []
     for cell in cells:
-        source, task = cell if isinstance(cell, tuple) else (cell, "")
-        marks = {"given": True} if task is None else {"task": task} if task else {}
+        source, task = (cell, "")
+        if isinstance(cell, tuple):
+            source, task = cell
+        marks = {}
+        if task is None:
+            marks["given"] = True
+        elif task:
+            marks["task"] = task
         listed.append({"cell_type": "code", "source": source, "metadata": {"hdrlab": marks}})
     return json.dumps({"cells": listed, "metadata": {}, "nbformat": 4, **more})
 
 
 @pytest.fixture
 def read(tmp_path):
-    """read(text) -> the Submission of a file that holds it."""
+    """read(text) -> the Submission of a file with this text."""
 
-    def read(text, name="hw.ipynb", given=()):
+    def read(text, name="hw.ipynb", given_cells=()):
         file = tmp_path / name
         file.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return reader.tasks_of(file, TASKS, given)
+        return reader.tasks_of(file, TASKS, given_cells)
 
     return read
 
@@ -43,7 +49,7 @@ def run(source, name="gsolve"):
 
 
 def test_a_function_is_extracted_with_exactly_the_code_that_it_needs(read):
-    found = read(
+    submission = read(
         notebook(
             "import numpy as np\nfrom hdrlab.capture import scenes\nroom = scenes.room()",
             ("def gsolve(Z):\n    return helper(Z) + K", "gsolve"),
@@ -51,43 +57,45 @@ def test_a_function_is_extracted_with_exactly_the_code_that_it_needs(read):
             "K = 4\nprint(gsolve([1]))\nraise SystemExit",
         )
     )
-    source = found.sources["gsolve"]
+    source = submission.sources["gsolve"]
     assert run(source)([1, 2]) == 19
     assert "room" not in source and "print" not in source and "SystemExit" not in source
 
 
 def test_reordered_cells_are_put_in_the_order_in_which_they_run(read):
-    found = read(
+    submission = read(
         notebook(
             "def gsolve(x=WIDTH):\n    return x",
             "WIDTH = double(4)",
             "def double(x):\n    return 2 * x",
         )
     )
-    assert run(found.sources["gsolve"])() == 8
+    assert run(submission.sources["gsolve"])() == 8
 
 
 def test_a_local_name_extracts_no_other_code(read):
-    found = read(
+    submission = read(
         notebook(
             "Z = load('photographs')",
             "def gsolve(Z):\n    E = [z for z in Z]\n    return E",
             "E = merge()",
         )
     )
-    assert "load" not in found.sources["gsolve"] and "merge" not in found.sources["gsolve"]
+    assert "load" not in submission.sources["gsolve"]
+    assert "merge" not in submission.sources["gsolve"]
 
 
 def test_a_task_is_found_by_its_cell_or_by_its_name(read):
-    found = read(
+    submission = read(
         notebook(
             "def gsolve():\n    return 1",
             ("def gsolve():\n    return 2", "gsolve"),
             "def merge():\n    return 3",
         )
     )
-    assert run(found.sources["gsolve"])() == 2 and run(found.sources["merge"], "merge")() == 3
-    assert any("several cells" in problem for problem in found.problems)
+    assert run(submission.sources["gsolve"])() == 2
+    assert run(submission.sources["merge"], "merge")() == 3
+    assert any("several cells" in problem for problem in submission.problems)
 
 
 @pytest.mark.parametrize(
@@ -102,35 +110,37 @@ def test_a_task_that_is_defined_twice_is_reported_with_the_one_that_counts(
         "other": "def gsolve():\n    return 2",
         "another": "def gsolve():\n    return 3",
     }
-    found = read(notebook(*(cells[name] for name in order.split())))
-    assert f"gsolve is defined in several cells; {counts} counts" in found.problems
-    assert run(found.sources["gsolve"])() == value
+    submission = read(notebook(*(cells[name] for name in order.split())))
+    assert f"gsolve is defined in several cells; {counts} counts" in submission.problems
+    assert run(submission.sources["gsolve"])() == value
 
 
 def test_given_code_is_taken_from_the_original_assignment(read):
-    given = [Cell("def given():\n    return 'ours'", given=True)]
-    found = read(
+    given_cells = [Cell("def given():\n    return 'ours'", given=True)]
+    submission = read(
         notebook(("def given():\n    return 'theirs'", None), "def gsolve():\n    return given()"),
-        given=given,
+        given_cells=given_cells,
     )
-    assert run(found.sources["gsolve"])() == "ours"
+    assert run(submission.sources["gsolve"])() == "ours"
 
 
 def test_a_students_helper_may_have_the_name_of_a_given_function(read):
-    given = [Cell("def given():\n    return 'ours'", given=True)]
-    found = read(
-        notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"), given=given
+    given_cells = [Cell("def given():\n    return 'ours'", given=True)]
+    submission = read(
+        notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"),
+        given_cells=given_cells,
     )
-    assert run(found.sources["gsolve"])() == "own"
+    assert run(submission.sources["gsolve"])() == "own"
 
 
 def test_a_broken_cell_affects_only_its_own_functions(read):
-    found = read(notebook(("def gsolve(:\n    pass", "gsolve"), "def merge():\n    return 1"))
-    assert set(found.sources) == {"merge"}
+    submission = read(notebook(("def gsolve(:\n    pass", "gsolve"), "def merge():\n    return 1"))
+    assert set(submission.sources) == {"merge"}
     assert any(
-        "cell 1, which holds gsolve, is no Python, line 1" in problem for problem in found.problems
+        "cell 1, which holds gsolve, is no Python, line 1" in problem
+        for problem in submission.problems
     )
-    assert any("gsolve was not found" in problem for problem in found.problems)
+    assert any("gsolve was not found" in problem for problem in submission.problems)
 
 
 @pytest.mark.parametrize(
@@ -145,15 +155,13 @@ def test_a_broken_cell_affects_only_its_own_functions(read):
     ],
 )
 def test_notebook_magics_are_no_error(read, cell):
-    found = read(notebook(cell, "def gsolve():\n    return np.arange(3)"))
-    assert (
-        run(found.sources["gsolve"])().tolist() == [0, 1, 2]
-        and found.problems == read(notebook("def gsolve():\n    return 1")).problems
-    )
+    submission = read(notebook(cell, "def gsolve():\n    return np.arange(3)"))
+    assert run(submission.sources["gsolve"])().tolist() == [0, 1, 2]
+    assert submission.problems == read(notebook("def gsolve():\n    return 1")).problems
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "message"),
     [
         (b"", "is empty"),
         (b"\xff\xfe\x00binary", "neither a notebook nor Python text"),
@@ -171,26 +179,26 @@ def test_notebook_magics_are_no_error(read, cell):
         ),
     ],
 )
-def test_a_file_that_is_no_notebook_is_reported(read, data, said):
-    found = read(data)
-    assert not found.sources and any(said in problem for problem in found.problems)
+def test_a_file_that_is_no_notebook_is_reported(read, data, message):
+    submission = read(data)
+    assert not submission.sources and any(message in problem for problem in submission.problems)
 
 
 def test_a_folder_and_a_missing_file_are_reported(tmp_path):
     for path in (tmp_path, tmp_path / "missing.ipynb"):
-        found = reader.tasks_of(path, TASKS)
-        assert not found.sources and "is not a file" in found.problems[0]
+        submission = reader.tasks_of(path, TASKS)
+        assert not submission.sources and "is not a file" in submission.problems[0]
 
 
 def test_deeply_nested_code_affects_only_its_cell(read):
-    found = read(
+    submission = read(
         notebook(
             "x = " + "(" * 5000 + ")" * 5000,
             "y = " + "-" * 50_000 + "1",
             "def gsolve():\n    return 1",
         )
     )
-    assert set(found.sources) == {"gsolve"}
+    assert set(submission.sources) == {"gsolve"}
 
 
 def test_a_python_file_is_read_with_and_without_cells(read):
@@ -228,8 +236,10 @@ def test_a_submitted_file_is_never_run(read, tmp_path):
 
 
 def test_the_same_file_has_the_same_hash_and_another_another(read):
-    first, again, other = (read(notebook(f"x = {n}")).hash for n in (1, 1, 2))
-    assert first == again != other
+    first = read(notebook("x = 1"))
+    again = read(notebook("x = 1"))
+    other = read(notebook("x = 2"))
+    assert first.hash == again.hash != other.hash
 
 
 @pytest.mark.parametrize(
@@ -251,7 +261,7 @@ def test_the_names_that_a_piece_of_code_needs_from_outside_are_found(code, free)
 
 
 @pytest.mark.parametrize(
-    ("names_in_it", "found"),
+    ("names_in_it", "submission"),
     [
         (["hw2.ipynb"], "hw2.ipynb"),
         (["photo.jpg", "mine.PY"], "mine.PY"),
@@ -261,19 +271,18 @@ def test_the_names_that_a_piece_of_code_needs_from_outside_are_found(code, free)
     ],
 )
 def test_the_only_notebook_of_an_archive_or_the_one_named_after_the_homework_is_read(
-    names_in_it, found, tmp_path
+    names_in_it, submission, tmp_path
 ):
     archive = tmp_path / "handed in.ZIP"
     with zipfile.ZipFile(archive, "w") as opened:
         for name in names_in_it:
             opened.writestr(name, "1 + 1\n")
     path, refused = reader.extract_code_file(archive, tmp_path, "hw2")
-    if found:
-        assert (path, refused) == (tmp_path / "files" / found, "")
+    if submission:
+        assert (path, refused) == (tmp_path / "files" / submission, "")
     else:
-        assert path == archive and refused.startswith(
-            "Expected one notebook or Python file in the archive, got "
-        )
+        assert path == archive
+        assert refused.startswith("Expected one notebook or Python file in the archive, got ")
 
 
 def test_a_file_that_is_no_archive_or_is_missing_is_taken_as_it_is(tmp_path):

@@ -55,7 +55,7 @@ def photograph(path, image, seconds):
 
 @pytest.fixture
 def home(tmp_path):
-    """A project with all that is asked for."""
+    """A complete project."""
     folder = tmp_path / "project"
     for name in ("photographs", "figures", "source", ".git", "__pycache__"):
         (folder / name).mkdir(parents=True)
@@ -84,9 +84,9 @@ def hdrlab(tmp_path, monkeypatch, capsys):
     """hdrlab(words) -> exit code, standard output and standard error."""
     monkeypatch.chdir(tmp_path)
 
-    def command(*said):
+    def command(*words):
         with pytest.raises(SystemExit) as ended:
-            cli.run([str(one) for one in said])
+            cli.run([str(word) for word in words])
         return ended.value.code or 0, *capsys.readouterr()
 
     return command
@@ -97,14 +97,19 @@ class Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.pictures, self.links, self.tags, self.order = [], [], [], []
+        self.pictures = []
+        self.links = []
+        self.tags = []
+        self.order = []
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
         attrs = dict(attrs)
         self.tags.append(tag)
-        self.pictures += [attrs] if tag == "img" else []
-        self.links += [attrs.get("href", "")] if tag == "a" else []
+        if tag == "img":
+            self.pictures.append(attrs)
+        if tag == "a":
+            self.links.append(attrs.get("href", ""))
         assert not [name for name in attrs if name.startswith("on")]
 
     def handle_data(self, data):
@@ -117,10 +122,13 @@ def bad(folder):
 
 
 def test_a_whole_project_can_be_reported_submitted_and_shown_in_the_gallery(home, tmp_path, hdrlab):
-    code, said, notes = hdrlab("report", home)
-    assert (code, notes) == (0, "") and "artifact, bracket, curves, map" in said
-    code, said, notes = hdrlab("submit", home)
-    assert code == 0 and "MISSING" not in said and "location" in said and "serial numbers" in said
+    code, output, notes = hdrlab("report", home)
+    assert (code, notes) == (0, "") and "artifact, bracket, curves, map" in output
+    code, output, notes = hdrlab("submit", home)
+    assert code == 0
+    assert "MISSING" not in output
+    assert "location" in output
+    assert "serial numbers" in output
     members = unpack(tmp_path / "submission.zip", tmp_path / "there")
     names = {str(path) for path, _ in members}
     assert {
@@ -132,16 +140,16 @@ def test_a_whole_project_can_be_reported_submitted_and_shown_in_the_gallery(home
     } <= names
     assert not [name for name in names if ".git" in name or "pycache" in name]
     described = json.loads((tmp_path / "there" / "submission.json").read_text())
-    assert described["students"] == ["b1", "b2"] and set(described["files"]) == names - {
-        "submission.json"
-    }
+    assert described["students"] == ["b1", "b2"]
+    assert set(described["files"]) == names - {"submission.json"}
     roster = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t")))
     with collect.entry(tmp_path / "submission.zip", roster, "b1_project") as entry:
         assert (entry.team, entry.title, entry.caption) == (
             "t",
             "Dusk",
             "By <hand>.",
-        ) and entry.picture.read_bytes()[:4] == b"\x89PNG"
+        )
+        assert entry.picture.read_bytes()[:4] == b"\x89PNG"
 
 
 def test_submitted_photos_keep_their_exposures_and_lose_their_locations(home, tmp_path, hdrlab):
@@ -191,16 +199,19 @@ def test_a_video_is_packed_with_a_warning(home, hdrlab):
 
 def test_the_same_project_makes_the_same_archive(home, tmp_path):
     reports.write_report(project.read_project(home))
-    found = project.read_project(home)
+    project_read = project.read_project(home)
     for name in ("a.zip", "b.zip"):
         handing.write(
-            found, tmp_path / name, list(handing.pack(found)), now=handing.datetime(2026, 3, 1)
+            project_read,
+            tmp_path / name,
+            list(handing.pack(project_read)),
+            now=handing.datetime(2026, 3, 1),
         )
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
 
 
 def spoil(home, how):
-    """Take something from a project, or break it."""
+    """Remove or break a part of a project."""
     reports.write_report(project.read_project(home))
     for name in how.split():
         target = home / name
@@ -212,7 +223,7 @@ def spoil(home, how):
 
 
 @pytest.mark.parametrize(
-    ("gone", "part", "said"),
+    ("gone", "part", "message"),
     [
         ("project.toml", "students", "Write a file project.toml"),
         ("source/hdr.py source/helpers.py", "source", "no source"),
@@ -223,9 +234,9 @@ def spoil(home, how):
         ("artifact.png", "artifact", "artifact.jpg"),
     ],
 )
-def test_a_missing_part_of_a_project_is_reported_with_what_to_do(home, gone, part, said):
+def test_a_missing_part_of_a_project_is_reported_with_what_to_do(home, gone, part, message):
     spoil(home, gone)
-    assert list(bad(home)) == [part] and said in bad(home)[part]
+    assert list(bad(home)) == [part] and message in bad(home)[part]
 
 
 def test_a_broken_part_of_a_project_is_reported(home):
@@ -236,14 +247,12 @@ def test_a_broken_part_of_a_project_is_reported(home):
     (home / "artifact.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(50))
     Image.new("RGB", (72, 48)).save(home / "photographs" / "9.jpg")  # without EXIF
     os.utime(home / "report.md", (2e9, 2e9))
-    found = bad(home)
-    assert set(found) == {"source", "map", "artifact", "photographs", "report"}
-    assert (
-        "line 1" in found["source"]
-        and "newer" in found["report"]
-        and "EXIF" in found["photographs"]
-    )
-    assert all(str(home) not in said for said in found.values())
+    problems = bad(home)
+    assert set(problems) == {"source", "map", "artifact", "photographs", "report"}
+    assert "line 1" in problems["source"]
+    assert "newer" in problems["report"]
+    assert "EXIF" in problems["photographs"]
+    assert all(str(home) not in message for message in problems.values())
 
 
 def test_photos_of_one_exposure_are_not_a_bracket(home):
@@ -254,15 +263,15 @@ def test_photos_of_one_exposure_are_not_a_bracket(home):
 
 def test_an_incomplete_project_is_packed_only_on_request(home, tmp_path, hdrlab):
     (home / "map.hdr").unlink()
-    code, said, notes = hdrlab("submit", home)
-    assert code == 2 and "MISSING" in said and not (tmp_path / "submission.zip").exists()
+    code, output, notes = hdrlab("submit", home)
+    assert code == 2 and "MISSING" in output and not (tmp_path / "submission.zip").exists()
     assert hdrlab("submit", home, "--force")[0] == 0 and (tmp_path / "submission.zip").exists()
 
 
 def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):
     (tmp_path / "secret.py").write_text("SECRET = 1")
     (home / "source" / "link.py").symlink_to(tmp_path / "secret.py")
-    assert not [one for one in project.read_project(home).files if one.name == "link.py"]
+    assert not [file for file in project.read_project(home).files if file.name == "link.py"]
 
 
 def test_figures_are_placed_in_their_sections(home):
@@ -297,14 +306,16 @@ def test_the_report_runs_nothing_fetches_nothing_and_names_its_pictures(home):
     page = Page(text)
     assert "script" not in page.tags and "&lt;script&gt;" in text and "By &lt;hand&gt;." in text
     assert page.links == [] and len(page.pictures) == 7
-    assert all(one["src"].startswith("data:image/") and one["alt"] for one in page.pictures)
+    assert all(
+        picture["src"].startswith("data:image/") and picture["alt"] for picture in page.pictures
+    )
 
 
 def test_figures_without_their_section_get_one_of_their_own(home):
     (home / "report.md").write_text("Only a word.\n")
     written = reports.write_report(project.read_project(home))
     order = Page(written.page.read_text()).order
-    assert [one for one in order if one in reports.OWN_HEADINGS.values()] == list(
+    assert [heading for heading in order if heading in reports.OWN_HEADINGS.values()] == list(
         reports.OWN_HEADINGS.values()
     )
     assert sum("no section about" in note for note in written.notes) == 6
@@ -345,13 +356,14 @@ def test_a_report_may_be_a_notebook_instead_of_markdown(home):
     (home / "report.ipynb").write_text(
         json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5})
     )
-    said = words.read(home / "report.ipynb")
-    assert (said.title, [section.topic for section in said.sections]) == ("Dusk", ["results"])
-    assert (
-        "<img" in said.sections[0].html
-        and "script" not in said.sections[0].html
-        and said.notes == ()
+    report_text = words.read(home / "report.ipynb")
+    assert (report_text.title, [section.topic for section in report_text.sections]) == (
+        "Dusk",
+        ["results"],
     )
+    assert "<img" in report_text.sections[0].html
+    assert "script" not in report_text.sections[0].html
+    assert report_text.notes == ()
     for broken in (
         "{}",
         "[]",

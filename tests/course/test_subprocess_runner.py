@@ -1,4 +1,6 @@
-"""A job in a process of its own: its environment, the reason of its end, and the number of processes."""
+"""A job in a separate process: its environment, the reason why it ended, and the number of
+processes.
+"""
 
 import ast
 import io
@@ -20,38 +22,41 @@ from hdrlab.course.sandbox.subprocess_runner import ProcessFailed, import_path
 
 @pytest.fixture
 def ended(monkeypatch):
-    """ended(code, answer, said, waits) -> what is done to a process that ends so, after as many looks."""
+    """ended(code, answer, printed, waits) -> the record of a fake process that ends like this after so
+    many polls.
+    """
 
-    def ended(code=0, answer=b"+", said=b"", waits=0):
-        told = SimpleNamespace(asked=[], done=[], now=50.0)
+    def ended(code=0, answer=b"+", message=b"", waits=0):
+        fake = SimpleNamespace(asked=[], done=[], now=50.0)
 
         class Process:
             returncode = code
 
             def __init__(self, command, **knobs):
-                told.command, told.knobs = command, knobs
-                told.scratch = Path(knobs["env"]["TMPDIR"])
-                assert told.scratch.is_dir()
+                fake.command = command
+                fake.knobs = knobs
+                fake.scratch = Path(knobs["env"]["TMPDIR"])
+                assert fake.scratch.is_dir()
 
             def __enter__(self):
                 return self
 
             def __exit__(self, *error):
-                told.done.append("left")
+                fake.done.append("left")
 
-            def communicate(self, given, timeout):
-                told.asked.append((given, timeout))
-                told.now += timeout
-                if len(told.asked) <= waits:
+            def communicate(self, arguments, timeout):
+                fake.asked.append((arguments, timeout))
+                fake.now += timeout
+                if len(fake.asked) <= waits:
                     raise subprocess.TimeoutExpired("", timeout)
-                return answer, said
+                return answer, message
 
             def kill(self):
-                told.done.append("kill")
+                fake.done.append("kill")
 
         monkeypatch.setattr(subprocess_runner.subprocess, "Popen", Process)
-        monkeypatch.setattr(subprocess_runner, "time", SimpleNamespace(monotonic=lambda: told.now))
-        return told
+        monkeypatch.setattr(subprocess_runner, "time", SimpleNamespace(monotonic=lambda: fake.now))
+        return fake
 
     return ended
 
@@ -64,31 +69,31 @@ def failed(**knobs):
 
 def test_a_process_gets_the_import_path_then_limits_function_and_job(ended, monkeypatch):
     monkeypatch.setenv("OF_THE_GRADER", "1")
-    told = ended(0, b"++answer")
+    fake = ended(0, b"++answer")
     assert subprocess_runner.run(len, "piece", timeout=1.0) == b"+answer"
-    assert told.command == [
+    assert fake.command == [
         sys.executable,
         "-P",
         "-m",
         subprocess_runner.__name__,
         str(os.getpid()),
     ]
-    environment = told.knobs["env"]
+    environment = fake.knobs["env"]
     assert (environment["PYTHONPATH"], environment["OF_THE_GRADER"]) == (import_path(), "1")
-    ((order, tick),) = told.asked
+    ((order, tick),) = fake.asked
     stream = io.BytesIO(order)
-    assert pickle.load(stream) == [one for one in sys.path if one]
+    assert pickle.load(stream) == [path for path in sys.path if path]
     assert pickle.load(stream) == ({}, len, "piece") and tick == 0.2
-    assert told.done == ["kill", "left"] and not told.scratch.exists()
-    told = ended()
+    assert fake.done == ["kill", "left"] and not fake.scratch.exists()
+    fake = ended()
     assert subprocess_runner.run(len, "piece", timeout=1.0, limits={"CPU": 3}) == b""
-    stream = io.BytesIO(told.asked[0][0])
+    stream = io.BytesIO(fake.asked[0][0])
     pickle.load(stream)
     assert pickle.load(stream)[0] == {"CPU": 3}
 
 
 @pytest.mark.parametrize(
-    ("code", "answer", "said", "why"),
+    ("code", "answer", "message", "why"),
     [
         (0, b"-ValueError: no", b"noise", ("ValueError: no", False, False)),
         (0, b"-MemoryError: ", b"", ("MemoryError:", True, False)),
@@ -107,26 +112,26 @@ def test_a_process_gets_the_import_path_then_limits_function_and_job(ended, monk
     ],
 )
 def test_a_failure_has_the_last_line_of_its_error_and_says_what_caused_it(
-    code, answer, said, why, ended
+    code, answer, message, why, ended
 ):
-    told = ended(code, answer, said)
-    assert failed() == why and told.done == ["kill", "left"] and not told.scratch.exists()
+    fake = ended(code, answer, message)
+    assert failed() == why and fake.done == ["kill", "left"] and not fake.scratch.exists()
 
 
 def test_a_process_is_waited_for_until_its_time_limit(ended):
-    told = ended(0, b"+x", waits=4)
+    fake = ended(0, b"+x", waits=4)
     assert subprocess_runner.run(len, "piece", timeout=0.81) == b"x"
-    assert [given is None for given, _ in told.asked] == [False, True, True, True, True]
-    told = ended(0, b"+x", waits=99)
+    assert [timeout is None for timeout, _ in fake.asked] == [False, True, True, True, True]
+    fake = ended(0, b"+x", waits=99)
     assert failed() == ("it took too long", False, False)
-    assert 5 <= len(told.asked) <= 6 and told.done == ["kill", "left"]
+    assert 5 <= len(fake.asked) <= 6 and fake.done == ["kill", "left"]
 
 
 def test_a_process_that_is_stopped_is_ended(ended):
     stops = iter((False, False, True))
-    told = ended(0, b"+x", waits=99)
+    fake = ended(0, b"+x", waits=99)
     assert failed(is_stopped=lambda: next(stops)) == ("it was stopped", False, False)
-    assert len(told.asked) == 3 and told.done == ["kill", "left"]
+    assert len(fake.asked) == 3 and fake.done == ["kill", "left"]
 
 
 # In a real process: the work is to evaluate an expression
@@ -134,13 +139,13 @@ def test_a_process_that_is_stopped_is_ended(ended):
 
 def test_printed_text_is_not_an_answer_and_limits_apply():
     limited = "[r.getrlimit(n) for r in [__import__('resource')] for n in (r.RLIMIT_CPU, r.RLIMIT_NOFILE)]"
-    asked = f"{limited}, __import__('tempfile').gettempdir()"
-    piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({asked})).encode()"
+    code = f"{limited}, __import__('tempfile').gettempdir()"
+    piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({code})).encode()"
     limits = {"CPU": 50, "NOFILE": 40, "OF_NO_KIND": 1}
-    found, scratch = ast.literal_eval(
+    limits_applied, scratch = ast.literal_eval(
         subprocess_runner.run(eval, piece, timeout=60, limits=limits).decode()
     )
-    assert found == [(50, 51), (40, 40)]
+    assert limits_applied == [(50, 51), (40, 40)]
     assert Path(scratch).name.startswith("hdrlab-piece-") and not Path(scratch).exists()
 
 
@@ -162,34 +167,37 @@ def test_printed_text_is_not_an_answer_and_limits_apply():
 def test_an_error_is_reported_in_one_line_and_differs_from_a_kill(piece, why):
     with pytest.raises(ProcessFailed) as raised:
         subprocess_runner.run(eval, piece, timeout=60)
-    said = str(raised.value)
+    message = str(raised.value)
     assert (
-        said if why[0] else None,
+        message if why[0] else None,
         raised.value.is_own_fault,
         raised.value.was_killed,
-    ) == why and "\n" not in said
+    ) == why
+    assert "\n" not in message
 
 
 def test_a_process_whose_parent_has_died_does_nothing(monkeypatch):
-    asked = []
+    calls = []
     monkeypatch.setattr(
-        subprocess_runner.system, "die_with_parent", lambda parent: asked.append(parent)
+        subprocess_runner.system, "die_with_parent", lambda parent: calls.append(parent)
     )
     monkeypatch.setattr(subprocess_runner.os, "dup", lambda descriptor: pytest.fail("it begins"))
     subprocess_runner.main("17")
-    assert asked == [17]
+    assert calls == [17]
 
 
 # So many at a time
 
 
 class Threads:
-    """A pool whose futures are ended by hand."""
+    """A fake pool, whose futures the test completes."""
 
     made: list = []
 
     def __init__(self, count, prefix):
-        self.count, self.begun, self.ended = count, [], None
+        self.count = count
+        self.begun = []
+        self.ended = None
         self.made.append(self)
 
     def submit(self, function, work, piece, **knobs):
@@ -203,7 +211,7 @@ class Threads:
 
 @pytest.fixture
 def threads(monkeypatch):
-    """The pools that were made."""
+    """The pools that were created."""
     monkeypatch.setattr(processes, "ThreadPoolExecutor", Threads)
     monkeypatch.setattr(Threads, "made", [])
     monkeypatch.setattr(processes, "WAIT_SECONDS", 0.01)
@@ -219,7 +227,7 @@ def test_the_number_of_parallel_processes_is_as_requested_or_the_number_of_proce
     monkeypatch.setattr(os, "cpu_count", lambda: processors)
     with processes.Processes(len, max_processes) as executor:
         jobs = [GradingJob(f"p{k}", Path(f"p{k}"), "key") for k in range(count + 1)]
-        assert [executor.start(one) for one in jobs] == [True] * count + [False]
+        assert [executor.start(job) for job in jobs] == [True] * count + [False]
         assert executor.wait_for_attempts() == []
         ((function, work, piece, knobs, future), *_) = threads[0].begun
         assert (function, work, piece, threads[0].count) == (

@@ -19,7 +19,7 @@ from hdrlab.course.sandbox.session import (
 
 
 class Process:
-    """A process that ends when it is told to, or has already; what is done to it is written down."""
+    """A fake process that ends on request, or has ended already, and records its calls."""
 
     def __init__(self, code=None, errors=b"", stubborn=False):
         self.code = code
@@ -44,7 +44,7 @@ class Process:
 
 
 class Supervisor:
-    """The other ends of a sandbox: each launch sends the messages of the next script at once."""
+    """The other ends of a sandbox: each launch immediately sends the messages of the next script."""
 
     def __init__(self, *scripts, process=Process, **options):
         self.scripts = list(scripts)

@@ -18,12 +18,12 @@ from hdrlab.course.submissions.archives.members import ArchiveLimits, ArchiveRej
 
 @pytest.fixture
 def taken(tmp_path):
-    """taken(data) -> what is unpacked of an archive of these bytes."""
+    """taken(data) -> the files that are unpacked from an archive of these bytes."""
     return partial(archive_unpacking.unpack_bytes, tmp_path)
 
 
 def header(name="a", kind=b"0", size=0):
-    """The header of a member of a tar, 512 bytes."""
+    """Return the header of a member of a tar file, 512 bytes."""
     made = tar_member(name, kind)
     made.size = size
     return made.tobuf(tarfile.USTAR_FORMAT)
@@ -136,7 +136,8 @@ def test_folders_count_as_members(taken):
 def test_an_uncompressed_tar_is_limited_in_size(more, tmp_path):
     limits = ArchiveLimits(max_members=3, max_total_bytes=70_000, max_compression_ratio=1)
     most = 70_000 + 3 * 1024 + 10240
-    archive, fresh = tmp_path / "a", tmp_path / "fresh"
+    archive = tmp_path / "a"
+    fresh = tmp_path / "fresh"
     fresh.mkdir()
     archive.write_bytes(header("a") + bytes(most - 512) + bytes(more))
     if more:
@@ -148,7 +149,8 @@ def test_an_uncompressed_tar_is_limited_in_size(more, tmp_path):
 
 @pytest.mark.parametrize("packing", [gzip, bz2, lzma])
 def test_a_compressed_tar_is_limited_in_its_compression_ratio(packing, taken):
-    most, data = 1 << 20, os.urandom(6000)
+    most = 1 << 20
+    data = os.urandom(6000)
     whole = header("a", size=6000) + data + bytes(most - 6512)
     assert taken(packing.compress(whole), max_compression_ratio=1) == {"a": data}
     larger = packing.compress(whole + b"\0")

@@ -48,14 +48,14 @@ def part(text, heading):
 def with_spans(before):
     """Return "14, 15, 16, 17" for "14 to 17"."""
 
-    def span(found):
-        return ", ".join(f"{k:02}" for k in range(int(found[1]), int(found[2]) + 1))
+    def span(match):
+        return ", ".join(f"{k:02}" for k in range(int(match[1]), int(match[2]) + 1))
 
     return re.sub(r"(\d\d) to (\d\d)", span, before)
 
 
 def plain(text):
-    """Return what a reader of a sheet sees: no marks, no addresses and no alternative text."""
+    """Return the visible text of a sheet, without markup, addresses and alternative texts."""
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", text)
     text = re.sub(r"\]\([^)]*\)", "]", text)
     return re.sub(r"[|*#`\[\]$]|^-+$|---", " ", text)
@@ -137,9 +137,11 @@ def test_a_wrong_prediction_is_an_answer_that_the_notebook_offers_and_a_wrong_on
         for question in collect_questions(notebook, name)
         if isinstance(question, ChoiceQuestion)
     ]
-    for asked, wrong in teachers_sheets.PREDICTION.findall(part(text, "Two wrong predictions")):
+    for prediction, wrong in teachers_sheets.PREDICTION.findall(
+        part(text, "Two wrong predictions")
+    ):
         for question in choices:
-            if " ".join(asked.split()) in question.text:
+            if " ".join(prediction.split()) in question.text:
                 assert wrong in question.labels
                 assert wrong != question.labels[question.right]
 
@@ -159,9 +161,9 @@ def test_each_number_of_a_sheet_is_in_its_notebook(name, text):
     text = re.sub(
         r"(?:notebooks?|homework) \d+(?: to \d+)?|\(\d\d[^)]*\)|^# .*$", "", text, flags=re.M
     )
-    found = re.findall(r"(?<![\w.])\d[\d.,]*\d|(?<![\w.])\d", plain(text))
+    numbers = re.findall(r"(?<![\w.])\d[\d.,]*\d|(?<![\w.])\d", plain(text))
     known = re.sub(r"(?<=\d)[_\s\\,]+(?=\d{3}\b)", "", source(name))
-    for number in found:
+    for number in numbers:
         digits = number.replace(",", "")
         if digits not in OWN_NUMBERS.get(name, {}):
             assert re.search(rf"(?<![\d.]){re.escape(digits)}(?![\d])", known), number

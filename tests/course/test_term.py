@@ -17,7 +17,7 @@ MONDAY = date(2031, 2, 10)
 
 @pytest.fixture
 def in_term(tmp_path):
-    """Return a function that gives the homeworks of the course's plan in a term."""
+    """Return a function that returns the homeworks of the course plan for a term."""
 
     def read(first_day, holidays=()):
         path = tmp_path / "plan.toml"
@@ -44,15 +44,16 @@ def test_a_date_is_on_the_weekday_and_in_the_week_of_the_plan(first_day, in_term
 
 def test_dates_from_a_week_without_a_class_on_come_a_week_later(in_term):
     free = date(2031, 3, 12)  # a Wednesday of the fifth week
-    plain, moved = in_term(MONDAY), in_term(MONDAY, [free])
+    plain = in_term(MONDAY)
+    moved = in_term(MONDAY, [free])
     for name, homework in plan.read().homeworks.items():
         later = moved[name].due - plain[name].due
         assert later == timedelta(weeks=1 if homework.due.week >= 5 else 0)
 
 
 def test_two_holidays_in_a_week_cost_one_week(in_term):
-    one = in_term(MONDAY, [date(2031, 3, 10)])
-    assert in_term(MONDAY, [date(2031, 3, 10), date(2031, 3, 16)]) == one
+    with_a_holiday = in_term(MONDAY, [date(2031, 3, 10)])
+    assert in_term(MONDAY, [date(2031, 3, 10), date(2031, 3, 16)]) == with_a_holiday
 
 
 def test_only_the_lines_of_the_term_change_when_a_plan_is_moved_again():
@@ -129,7 +130,8 @@ def test_the_command_writes_a_plan_of_its_own_and_lists_the_dates(tmp_path):
 
 
 def test_the_command_says_which_dates_it_did_not_change(tmp_path):
-    own, out = tmp_path / "own.toml", tmp_path / "moved.toml"
+    own = tmp_path / "own.toml"
+    out = tmp_path / "moved.toml"
     own.write_text(
         TEXT.replace('{ week = 3, day = "Friday", time = "23:59Z" }', "2031-03-01T12:00:00Z")
     )
@@ -139,7 +141,8 @@ def test_the_command_says_which_dates_it_did_not_change(tmp_path):
 
 
 def test_a_plan_with_holidays_keeps_them_unless_others_are_given(tmp_path):
-    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    first = tmp_path / "first.toml"
+    second = tmp_path / "second.toml"
     first.write_text(term.move(TEXT, MONDAY, [date(2031, 3, 10)]), encoding="utf8")
     words = ["course", "move", "2031-02-17", "--plan", str(first), "-o", str(second)]
     assert CliRunner().invoke(cli.main, words).exit_code == 0

@@ -48,10 +48,12 @@ def test_a_member_without_a_name_is_refused(tmp_path):
         (data.index(b"PK\1\2"), 28),
     ):  # in its header, and in the list of members
         data = data[: at + length] + struct.pack("<H", 0) + data[at + length + 2 :]
-    local, listed = data.index(b"xy"), data.rindex(b"x")
+    local = data.index(b"xy")
+    listed = data.rindex(b"x")
     data = data[:local] + data[local + 1 : listed] + data[listed + 1 :]
     end = data.index(b"PK\5\6")
-    size, start = end - data.index(b"PK\1\2"), data.index(b"PK\1\2")
+    size = end - data.index(b"PK\1\2")
+    start = data.index(b"PK\1\2")
     (tmp_path / "a.zip").write_bytes(
         data[: end + 12] + struct.pack("<LL", size, start) + data[end + 20 :]
     )
@@ -80,7 +82,8 @@ def test_a_photo_that_cannot_be_cleaned_is_named_among_forty():
 
 
 def test_overlapping_exif_values_are_read_once(tmp_path):
-    count, size = 2000, 500_000
+    count = 2000
+    size = 500_000
     entries = b"".join(struct.pack("<HHLL", 0x9000 + k, 7, size, 8) for k in range(count))
     block = b"II*\0" + struct.pack("<LH", 8, count) + entries + struct.pack("<L", 0)
     directory = tiff_directories.read_directory(block.ljust(size + 8, b"\0"), 8)
@@ -100,9 +103,9 @@ def test_a_long_value_in_a_plan_is_shortened_in_the_message(line, tmp_path):
     (tmp_path / "plan.toml").write_text(
         line.format(long="x" * 5000, digits="7" * 4000) + SHEET.format(points=1)
     )
-    with pytest.raises(ValueError, match=r"plan\.toml") as said:
+    with pytest.raises(ValueError, match=r"plan\.toml") as error:
         plan.read(tmp_path / "plan.toml")
-    assert len(str(said.value)) < 1000
+    assert len(str(error.value)) < 1000
 
 
 def test_a_cell_that_is_too_long_is_refused_with_the_tables_name(tmp_path):
@@ -119,9 +122,9 @@ def test_a_damaged_result_is_refused(change, tmp_path):
     course_seeds.result(tmp_path)
     data = (tmp_path / "a.json").read_bytes()
     assert change[0] in data
-    with pytest.raises(ValueError, match="result") as said:
+    with pytest.raises(ValueError, match="result") as error:
         results.from_json(data.replace(*change))
-    assert len(str(said.value)) < 1000
+    assert len(str(error.value)) < 1000
 
 
 def test_a_zip_with_an_impossible_directory_offset_is_refused(tmp_path):

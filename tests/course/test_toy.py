@@ -20,28 +20,28 @@ from hdrlab.course.students import csv_tables
 pytestmark = pytest.mark.grading
 
 HOMEWORK = plan.read().homeworks[toy_class.HOMEWORK]
-WHOLE = {"s01", "s02", "s03", "s04", "s05", "s11"}  # all right
-NOTHING = {"s10", "s12", "s13", "s14"}  # blank, a hostile archive, attacks, not handed in
+WITH_ALL_POINTS = {"s01", "s02", "s03", "s04", "s05", "s11"}  # all right
+WITHOUT_POINTS = {"s10", "s12", "s13", "s14"}  # blank, a hostile archive, attacks, not handed in
 HOSTILE = ("s12_hw2.zip", "s13_hw2.py")
-AGAIN = ("s02", "s06", "t1")  # graded once more, where nobody is hostile
+AGAIN = ("s02", "s06", "t1")  # graded again without hostile submissions
 
 
 def run(words):
-    """Run a command, and expect that all goes well."""
+    """Run a command that must succeed."""
     with pytest.raises(SystemExit) as ended:
         cli.run(words)
     assert not ended.value.code
 
 
 def grade(folder, out, *words):
-    """Grade a toy class by the command that stands in its README."""
+    """Grade a toy class with the command in its README."""
     run(
         [*toy_class.COMMAND.format(folder=folder).split()[1:-1], str(out), "--tier", tier(), *words]
     )
 
 
 def tier():
-    """Return the tier that this machine can give."""
+    """Return the tier that this machine can run."""
     try:
         tiers.choose("strict")
     except tiers.Unavailable:
@@ -71,15 +71,15 @@ def read(graded, team):
 
 
 def sentence(name):
-    (one,) = (one for one in misconceptions.known() if one.name == name)
-    return one.sentence
+    (mistake,) = (mistake for mistake in misconceptions.known() if mistake.name == name)
+    return mistake.sentence
 
 
 def test_correct_work_gets_all_points_blank_or_hostile_work_none(rows):
     work = {who: float(row["work"]) for who, row in rows.items()}
     assert len(work) == 14
-    assert {who for who, points in work.items() if points == HOMEWORK.points} == WHOLE
-    assert {who for who, points in work.items() if points == 0} == NOTHING
+    assert {who for who, points in work.items() if points == HOMEWORK.points} == WITH_ALL_POINTS
+    assert {who for who, points in work.items() if points == 0} == WITHOUT_POINTS
     assert work["s09"] == 30 and work["s07"] < work["s06"]
 
 
@@ -109,8 +109,10 @@ def test_each_mistake_is_named_to_its_student_and_counted_for_the_class(graded):
 
 
 def test_the_hostile_archive_is_refused_and_the_plain_one_is_unpacked(graded):
-    (said,) = read(graded, "s12").problems
-    assert said == "The archive is refused: '../s01_hw2.ipynb' leads out of the archive's folder."
+    (problem,) = read(graded, "s12").problems
+    assert (
+        problem == "The archive is refused: '../s01_hw2.ipynb' leads out of the archive's folder."
+    )
     assert not read(graded, "s11").problems
     assert not list(graded.rglob(".unpack*"))
 
@@ -123,9 +125,8 @@ def test_text_printed_by_attackers_is_escaped_on_every_page(graded):
 
 def test_canvas_gets_the_points_after_the_penalty(graded):
     lines = (graded / "results" / "canvas.csv").read_text(encoding="utf-8-sig").splitlines()
-    assert len(lines) == 1 + 1 + 14 and any(
-        line.startswith("Student 05,") and "98" in line for line in lines
-    )
+    assert len(lines) == 1 + 1 + 14
+    assert any(line.startswith("Student 05,") and "98" in line for line in lines)
 
 
 def test_hostile_submissions_change_no_other_result(graded, tmp_path):
@@ -142,7 +143,7 @@ def test_hostile_submissions_change_no_other_result(graded, tmp_path):
 
 
 def digests(out, team):
-    """Return what a run has written about a team."""
+    """Return the files that a run has written about a team."""
     files = [*(out / "results").glob(f"{team}.*"), *(out / "feedback" / team).iterdir()]
     return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
@@ -174,10 +175,10 @@ def test_two_toy_classes_are_the_same(tmp_path):
 @pytest.mark.quick
 def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
     files = toy_class.write(tmp_path / "class")
-    assert all(json.loads(one.read_bytes())["cells"] for one in files if one.suffix == ".ipynb")
-    assert all(ast.parse(one.read_bytes()).body for one in files if one.suffix == ".py")
-    assert all(zipfile.is_zipfile(one) for one in files if one.suffix == ".zip")
-    assert {one.suffix for one in files} == {".ipynb", ".py", ".zip"}
+    assert all(json.loads(file.read_bytes())["cells"] for file in files if file.suffix == ".ipynb")
+    assert all(ast.parse(file.read_bytes()).body for file in files if file.suffix == ".py")
+    assert all(zipfile.is_zipfile(file) for file in files if file.suffix == ".zip")
+    assert {file.suffix for file in files} == {".ipynb", ".py", ".zip"}
 
 
 @pytest.mark.quick
@@ -195,12 +196,14 @@ def test_without_a_sandbox_both_commands_say_what_to_do(tmp_path, capsys, monkey
 
     monkeypatch.setitem(tiers.TIERS, "strict", none)
     run(["course", "toy", str(tmp_path / "class")])
-    said = capsys.readouterr()
-    assert (
-        "--tier practice" in said.out and "bubblewrap" in said.err and "hdrlab doctor" in said.err
-    )
+    output = capsys.readouterr()
+    assert "--tier practice" in output.out
+    assert "bubblewrap" in output.err
+    assert "hdrlab doctor" in output.err
     with pytest.raises(SystemExit) as ended:
         cli.run(toy_class.COMMAND.format(folder=tmp_path / "class").split()[1:])
-    said = capsys.readouterr().err.strip().splitlines()[-1]
-    assert ended.value.code == 2 and said.startswith("hdrlab: ")
-    assert "install bubblewrap" in said and "hdrlab doctor" in said and "--tier practice" in said
+    output = capsys.readouterr().err.strip().splitlines()[-1]
+    assert ended.value.code == 2 and output.startswith("hdrlab: ")
+    assert "install bubblewrap" in output
+    assert "hdrlab doctor" in output
+    assert "--tier practice" in output

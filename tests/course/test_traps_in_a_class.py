@@ -25,16 +25,20 @@ LISTED = (
 NAMES = [name for name in MALICIOUS_ARCHIVES if any(word in name for word in LISTED)]
 
 
-def is_refused(said):
-    return said.startswith("The archive is refused: ") and said.isprintable() and len(said) < 250
+def is_refused(message):
+    return (
+        message.startswith("The archive is refused: ")
+        and message.isprintable()
+        and len(message) < 250
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_each_trap_is_refused_in_one_line_and_leaves_nothing(tmp_path, name):
     (tmp_path / "scratch").mkdir()
     MALICIOUS_ARCHIVES[name](tmp_path / "s01.zip")
-    path, said = reader.extract_code_file(tmp_path / "s01.zip", tmp_path / "scratch", "hw2")
-    assert path == tmp_path / "s01.zip" and is_refused(said)
+    path, message = reader.extract_code_file(tmp_path / "s01.zip", tmp_path / "scratch", "hw2")
+    assert path == tmp_path / "s01.zip" and is_refused(message)
     assert {file.name for file in tmp_path.rglob("*")} == {"s01.zip", "scratch"}
 
 
@@ -59,8 +63,8 @@ def test_a_class_with_traps_is_graded_and_each_trap_is_reported(tmp_path, monkey
     )
     for student in who:
         (file,) = (tmp_path / "out" / "results").glob(f"{student}.*")
-        said = results.from_json(file.read_bytes()).problems
-        assert len(said) == (student in trapped) and all(map(is_refused, said))
+        message = results.from_json(file.read_bytes()).problems
+        assert len(message) == (student in trapped) and all(map(is_refused, message))
     assert {file.name for file in tmp_path.iterdir()} == {"in", "roster.csv", "plan.toml", "out"}
 
 

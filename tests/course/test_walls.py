@@ -44,7 +44,7 @@ def test_bubblewrap_gets_its_arguments_in_the_required_order(monkeypatch):
 
 
 class Lease:
-    """What holds a user number."""
+    """A fake lease of a user number."""
 
     def __init__(self, ended):
         self.ended = ended
@@ -58,7 +58,7 @@ class Lease:
 
 @pytest.fixture
 def launched(monkeypatch):
-    """What a launch hands to a process, and to a descent; a lease that ends is in `ended`."""
+    """The arguments of the process and of the descent of a launch; ended leases are in `ended`."""
     made = SimpleNamespace(started=[], orders=[], ended=[], rules=[])
 
     def start(words, environment, *, pass_fds):
@@ -120,8 +120,8 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
     launched, monkeypatch, tmp_path
 ):
     (tmp_path / "scipy.libs").mkdir()
-    found = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
-    monkeypatch.setattr(session, "package_folders", lambda: found)
+    folders = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
+    monkeypatch.setattr(session, "package_folders", lambda: folders)
     inside = replace(INSIDE, places={"/python/bin/python3": "/usr/local/bin/python3.11"}, hidden=())
     monkeypatch.setattr(container, "contents", lambda: inside)
     made = container.launch(CONTROL)
@@ -130,17 +130,15 @@ def test_the_container_tier_is_launched_through_homes_that_root_has_opened(
     assert order["homes"] == [
         "/usr",
         str(program.parent),
-        *found.values(),
+        *folders.values(),
         f"{tmp_path}/scipy.libs",
     ]
     listable, readable = inside.allowed_paths()
-    assert (
-        order["fence"] == {"readable": readable, "listable": listable, "writable": [os.devnull]}
-        and order["user"] == 60706
-    )
-    told = {"numpy": "{2}", "scipy": "{3}"}
+    assert order["fence"] == {"readable": readable, "listable": listable, "writable": [os.devnull]}
+    assert order["user"] == 60706
+    versions = {"numpy": "{2}", "scipy": "{3}"}
     assert order["command"] == session.supervisor_command(
-        "{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told
+        "{0}/local/bin/python3.11", "{1}/supervisor.py", 5, versions
     )
     more = {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib:{4}"}
     assert order["environment"] == session.ENVIRONMENT | more
@@ -157,9 +155,9 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     made = container.sandbox()
     assert made.credit and made.seccomp_program == b"rules of a check"
     assert made.limits == session.LIMITS
-    for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
+    for name, value, message in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
         here[name] = value
-        with pytest.raises(Unavailable, match=f"container tier {said}"):
+        with pytest.raises(Unavailable, match=f"container tier {message}"):
             container.sandbox()
     container.sys.platform = "darwin"
     with pytest.raises(Unavailable, match="container tier needs Linux, and this is darwin"):
@@ -182,7 +180,8 @@ def test_the_practice_tier_runs_in_a_temporary_folder(variables, launched, monke
         python, str(session.SUPERVISOR_PATH), 5, session.package_folders()
     )
     own = {"HOME": made.scratch, "TMPDIR": made.scratch}
-    assert environment == session.ENVIRONMENT | own | variables and knobs == {
+    assert environment == session.ENVIRONMENT | own | variables
+    assert knobs == {
         "pass_fds": [5],
         "folder": made.scratch,
     }
@@ -230,5 +229,5 @@ def test_package_folders_are_found_in_the_mounted_paths(tmp_path):
         "/packages/p": f"{tmp_path}/p",
         "/f": f"{tmp_path}/none",
     }
-    found = contents._find_package_folders(places)
-    assert found == ["/python/lib/python3.11/dist-packages", "/python/lib/site-packages"]
+    folders = contents._find_package_folders(places)
+    assert folders == ["/python/lib/python3.11/dist-packages", "/python/lib/site-packages"]

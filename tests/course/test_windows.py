@@ -32,7 +32,9 @@ lacking = pytest.mark.skipif(
 
 @pytest.fixture
 def on_windows(tmp_path):
-    """on_windows(*words) -> (exit code, stdout, stderr) of Python with these words, as if on Windows."""
+    """on_windows(*words) -> (exit code, stdout, stderr) of Python with these arguments, as if on
+    Windows.
+    """
     python = tmp_path / "python"
     python.mkdir()
     launcher, environment = simulated_windows.build_interpreter(python)
@@ -117,7 +119,7 @@ def test_an_instructor_grades_a_class_for_practice(on_windows, tmp_path):
     code, out, err = on_windows("-m", "hdrlab", "grade", *words, "--out", "results")
     assert code == 0, (out, err)
     kept = [json.loads(file.read_bytes()) for file in (tmp_path / "results").rglob("*.*.json")]
-    assert [one["score"] for one in kept] == [10.0], (out, err)
+    assert [record["score"] for record in kept] == [10.0], (out, err)
 
 
 @lacking
@@ -136,14 +138,16 @@ def imported(path):
         elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(
             ("import_module", "_import_if_available")
         ):
-            yield from (one.value for one in node.args if isinstance(one, ast.Constant))
+            yield from (
+                argument.value for argument in node.args if isinstance(argument, ast.Constant)
+            )
 
 
 def test_only_two_modules_import_posix_modules():
     files = [
         path
         for path in HOME.rglob("*.py")
-        if any(one in path.read_text(encoding="utf8") for one in POSIX)
+        if any(name in path.read_text(encoding="utf8") for name in POSIX)
     ]
     assert {path.relative_to(HOME) for path in files if POSIX & set(imported(path))} == {
         SYSTEM,

@@ -13,13 +13,13 @@ from hdrlab.course.classroom.jobs import GradingJob, JobAttempt
 
 @pytest.fixture
 def clustered(monkeypatch):
-    """clustered(a=2, b=1) -> a Cluster of these workers and their threads, and its client."""
+    """clustered(a=2, b=1) -> a Cluster of workers with so many threads, and its client."""
     return partial(fake_cluster.make_cluster, monkeypatch)
 
 
 @pytest.fixture
 def job(tmp_path):
-    """job(owner) -> a Piece whose file is there."""
+    """job(owner) -> a GradingJob with an existing file."""
 
     def job(owner="ada"):
         (tmp_path / f"{owner}.py").write_bytes(owner.encode())
@@ -44,13 +44,15 @@ def test_a_job_that_must_run_alone_waits_for_an_idle_worker(clustered, job):
     made, client = clustered(a=2)
     assert made.start(job("first")) and not made.start(job("doubted"), alone=True)
     (future,) = made._running
-    future.status, future.answer = "finished", b"+1"
+    future.status = "finished"
+    future.answer = b"+1"
     assert made.wait_for_attempts() == [JobAttempt(job("first"), b"1")]
     assert made.start(job("doubted"), alone=True) and not made.start(job("next"))
     client.threads["b"] = 1
     assert made.start(job("next")) and [worker for _, worker in client.sent] == ["a", "a", "b"]
     (future, _) = made._running
-    future.status, future.answer = "finished", b"+1"
+    future.status = "finished"
+    future.answer = b"+1"
     made.wait_for_attempts()
     assert made.start(job("more")) and client.sent[-1][1] == "a"
 
@@ -82,7 +84,8 @@ def test_a_lost_cluster_is_reported(clustered, job):
 
 def ended(made, status, answer=None, which=0):
     future = list(made._running)[which]
-    future.status, future.answer = status, answer
+    future.status = status
+    future.answer = answer
     return made.wait_for_attempts()
 
 
@@ -131,15 +134,16 @@ def test_a_lost_worker_is_blamed_on_a_job_that_ran_alone(clustered, job):
     assert sorted(places.values()) == ["a", "a", "b", "c"]
     gone = [future for future, running in made._running.items() if running.worker in "ab"]
     del client.threads["a"], client.threads["b"]
-    found = made.wait_for_attempts()
-    assert {one.job.owner: (one.result, one.problem, one.counts) for one in found} == {
+    attempts = made.wait_for_attempts()
+    assert {
+        attempt.job.owner: (attempt.result, attempt.problem, attempt.counts) for attempt in attempts
+    } == {
         owner: (None, f"its worker {worker} was lost", worker == "b")
         for owner, worker in places.items()
         if worker != "c"
     }
-    assert client.cancelled == [gone] and [
-        running.worker for running in made._running.values()
-    ] == ["c"]
+    assert client.cancelled == [gone]
+    assert [running.worker for running in made._running.values()] == ["c"]
 
 
 def test_a_job_that_kills_workers_is_given_up_and_the_others_run(clustered, job):
@@ -158,7 +162,7 @@ def test_a_job_that_kills_workers_is_given_up_and_the_others_run(clustered, job)
 
 @pytest.fixture
 def entered(clustered, monkeypatch):
-    """entered(client's knobs) -> the client of a Cluster that was entered."""
+    """entered(options of the client) -> the client of an entered Cluster."""
 
     def entered(error=None, **knobs):
         made, client = clustered(a=1)
@@ -186,7 +190,7 @@ def test_a_run_that_ends_cancels_its_running_jobs(entered, job):
 
 
 @pytest.mark.parametrize(
-    ("knobs", "said"),
+    ("knobs", "message"),
     [
         ({"scheduler": "0.1"}, "the scheduler of the cluster has hdrlab 0.1, expected"),
         ({"versions": {"w": "0.2"}}, "w of the cluster has hdrlab 0.2, expected"),
@@ -197,10 +201,10 @@ def test_a_run_that_ends_cancels_its_running_jobs(entered, job):
         ({"versions": {"w": OSError()}, "able": {"v": None, "w": OSError()}}, ""),
     ],
 )
-def test_a_cluster_of_another_hdrlab_or_without_the_tier_is_refused(knobs, said, entered):
+def test_a_cluster_of_another_hdrlab_or_without_the_tier_is_refused(knobs, message, entered):
     made, client = entered(**knobs)
-    if said:
-        with pytest.raises(ValueError, match=said), made:
+    if message:
+        with pytest.raises(ValueError, match=message), made:
             pass
         assert client.closed == 1
     else:

@@ -19,7 +19,7 @@ from hdrlab.course.submissions.archives.members import ArchiveRejected
 
 @pytest.fixture
 def taken(tmp_path):
-    """taken(data) -> what is unpacked of an archive of these bytes."""
+    """taken(data) -> the files that are unpacked from an archive of these bytes."""
     return partial(archive_unpacking.unpack_bytes, tmp_path)
 
 
@@ -79,12 +79,12 @@ def test_overlapping_members_are_refused(taken):
     for more, shares in ((1, False), (2, True)):  # a header has 30 bytes, and a name of one byte
         packed = whole[:]
         packed[at : at + 4] = struct.pack("<L", struct.unpack_from("<L", whole, at)[0] + more)
-        said = ""
+        message = ""
         try:
             taken(bytes(packed))
         except ArchiveRejected as error:  # a newer reader may have another reason
-            said = str(error)
-        assert ("'a'" in said and "shares" in said) is shares
+            message = str(error)
+        assert ("'a'" in message and "shares" in message) is shares
 
 
 def test_a_central_directory_cut_at_any_byte_is_refused(taken):
@@ -129,15 +129,15 @@ def test_a_central_directory_may_claim_the_largest_allowed_numbers(taken):
 def test_other_errors_of_the_zip_reader_are_shortened(taken, monkeypatch):
     for error, why in ((ValueError("n" * 200), "n" * 79 + "\u2026"), (EOFError(), "EOFError")):
         monkeypatch.setattr(
-            tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error)
+            tarball, "unpack", lambda *arguments, error=error: (_ for _ in ()).throw(error)
         )
         message = rejection_message(taken, b"x")
         assert message.startswith(DAMAGED_MESSAGE) and message.endswith(f"({why})")
     place = OSError(errno.EINVAL, "a place before the beginning")
-    monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(place))
+    monkeypatch.setattr(tarball, "unpack", lambda *arguments: (_ for _ in ()).throw(place))
     assert rejection_message(taken, b"x").startswith(DAMAGED_MESSAGE)
     full = OSError(errno.ENOSPC, "no room")
-    monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(full))
+    monkeypatch.setattr(tarball, "unpack", lambda *arguments: (_ for _ in ()).throw(full))
     with pytest.raises(OSError, match="no room"):
         taken(b"x")
 
