@@ -65,6 +65,7 @@ NUMBERS = {
 OPEN_TEXT = {
     "00": {
         "100": "an example of a level",
+        "128": "the level at which every g of hdrlab is 0",
         "200": "twice that level",
         "128": "the level at which the curve of the response is 0: see notebook 04",
         "ten stops": "a screen of 1 : 1000; seven stops are 1 : 128",
@@ -155,6 +156,9 @@ OPEN_TEXT = {
         "four decades": "see the map of the chapel",
         "two decades": "a screen of 1 : 100",
         "0.04": "F90 of the specification of Khronos PBR Neutral",
+        "0.08": "2 F90 of that specification, where the offset ends",
+        "2.2": "the exponent of AgX's display codes",
+        "5000": "mu of the logarithm of Kalantari and Ramamoorthi, 2017",
         "16.5": "stops, the range of AgX",
         "2.2": "the gamma of the display that AgX's codes are for",
         "0.08": "below it, Khronos PBR Neutral takes less off than 0.04",
