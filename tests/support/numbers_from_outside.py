@@ -67,7 +67,6 @@ OPEN_TEXT = {
         "100": "an example of a level",
         "128": "the level at which every g of hdrlab is 0",
         "200": "twice that level",
-        "128": "the level at which the curve of the response is 0: see notebook 04",
         "ten stops": "a screen of 1 : 1000; seven stops are 1 : 128",
     },
     "01": {
@@ -160,9 +159,6 @@ OPEN_TEXT = {
         "2.2": "the exponent of AgX's display codes",
         "5000": "mu of the logarithm of Kalantari and Ramamoorthi, 2017",
         "16.5": "stops, the range of AgX",
-        "2.2": "the gamma of the display that AgX's codes are for",
-        "0.08": "below it, Khronos PBR Neutral takes less off than 0.04",
-        "5000": "mu of the mu-law by which learned methods are scored",
         "4 stops": "where the ramp of the lamp begins",
         "8 stops": "where it ends",
         "240": "degrees, the blue of the display by the definition of hue",
