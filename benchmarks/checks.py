@@ -95,9 +95,8 @@ def graded(folder: Path) -> dict[str, Any]:
     for (file, text), homework in zip(files.items(), (alone, both), strict=True):
         file.write_text(text)
         act = partial(grader.grade, file, homework, GradingOptions(tier="practice"))
-        spent.append(
-            min(_seconds(act, _of_all) for _ in range(3))
-        )  # what is loaded once is not the work's
+        # what is loaded once is not the work's
+        spent.append(min(_seconds(act, _of_all) for _ in range(3)))
     return {
         "starts of Python, a check and a homework": np.array(spent) / start(_of_children, LOADED)
     }

@@ -83,9 +83,8 @@ def curve_error(g: Array) -> float:
     """Return the RMS error of f^-1 over the levels 10 to 250, in % of its top, against the camera's own."""
     estimate = np.exp(np.reshape(g, (256, -1))[10:251])
     own = np.exp(np.reshape(true_g(RESPONSE), (256, -1))[10:251])
-    estimate = (
-        estimate * (estimate * own).sum(axis=0) / (estimate**2).sum(axis=0)
-    )  # the scale is free
+    # the scale is free
+    estimate = estimate * (estimate * own).sum(axis=0) / (estimate**2).sum(axis=0)
     return float(100 * np.sqrt(np.mean((estimate - own) ** 2)) / own.max())
 
 

@@ -71,9 +71,8 @@ def shares(sizes: dict[str, float], needs: dict[str, set[str]]) -> dict[str, tup
         name: [package for package in among if users[package] == 1]
         for name, among in brings.items()
     }
-    shared = sizes.keys() - {
-        package for package, count in users.items() if count == 1
-    }  # extras of others, too
+    # extras of others, too
+    shared = sizes.keys() - {package for package, count in users.items() if count == 1}
     rows["what several of them need"] = sorted(shared - {"hdrlab", "pip", "setuptools"})
     rows["hdrlab itself"] = ["hdrlab"]
     totals = {

@@ -76,9 +76,8 @@ def child(subject: str, row: Row, folder: Path, *what: str) -> dict[str, Any]:
 
 def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None:
     """Find it out, in the child, and print it as JSON."""
-    if what != "default" and hasattr(
-        os, "sched_setaffinity"
-    ):  # the same processor for all, peers' processes too
+    # the same processor for all, peers' processes too
+    if what != "default" and hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     rows = rows_of(subject)
     row = next(row for row in rows if row.name == name)
@@ -113,9 +112,8 @@ def timed(case: Case) -> dict[str, Any]:
             break
         for who, run in case.runs.items():
             seconds[who].append(clocked(run))
-        if (
-            case.least
-        ):  # by turns, for what the others leave in memory and on the disk slows it down
+        # by turns, for what the others leave in memory and on the disk slows it down
+        if case.least:
             least.append(clocked(case.least))
     floors = dict.fromkeys(floors, median(least)) if least else floors
     return {

@@ -85,9 +85,17 @@ def test_a_hold_against_peers_that_are_missing_is_not_judged(hold):
 
 def test_a_block_names_everyone_the_missing_and_every_verdict():
     text = table.block(row(faster(10, 20), smaller(0.5)), RESULTS, {"other": "not installed"})
+    # fmt: skip
     assert [line.split()[0] for line in text.splitlines()] == [
-        "work:", "one", OURS, "slow", "fast", "other:", "MISSED", "ok",
-    ]  # fmt: skip
+        "work:",
+        "one",
+        OURS,
+        "slow",
+        "fast",
+        "other:",
+        "MISSED",
+        "ok",
+    ]
     assert "100 ms" in text and "2.00 s" in text and "50 MB" in text
     assert "other: missing, not installed" in text
     assert "hold >= 10, goal 20" in text
@@ -136,11 +144,12 @@ def test_an_unknown_subject_or_row_is_refused_with_a_list_of_known_ones(argument
     assert "nothing" in errors and known in errors
 
 
+# each in a row of its own, as one may be missing
 PEERS = (
     "opencv",
     "align_image_stack",
     "scikit-image",
-)  # each in a row of its own, as one may be missing
+)
 BRACKET_PEERS = ("mtb", "cerman", "alignmtb", "ecc", "align_image_stack")
 WITHOUT_HOLD = {
     "align": {

@@ -106,9 +106,8 @@ class Forked:
             yield
         finally:
             path.write_text(before, encoding="utf8")
-            os.utime(
-                path, ns=(state.st_atime_ns, state.st_mtime_ns)
-            )  # its compiled form is true again
+            # its compiled form is true again
+            os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
 
     def end(self) -> None:
         """End the process."""

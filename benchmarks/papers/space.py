@@ -19,9 +19,8 @@ from hdrlab.calibration.chart import NEUTRAL
 from hdrlab.response import space
 
 Float = NDArray[np.float64]
-PLACES = NEUTRAL[
-    :5
-]  # the chart's grays but black: as exposures, where white is at 0.9 of the range
+# the chart's grays but black: as exposures, where white is at 0.9 of the range
+PLACES = NEUTRAL[:5]
 EMOR = "RMS with 3, 5, 11 published components"
 OURS = "RMS with 3, 5, 11 components of ours"
 SAMPLES = "RMS of a response from 5 samples, mean, %"

@@ -26,10 +26,11 @@ from hdrlab.calibration import motion_blur
 Float = NDArray[np.float64]
 WAYS = {"display": setup.by_display, "blur": setup.by_motion_blur}
 WAY_NAMES = {"display": "the display", "blur": "blur"}
+# RMSE, disparity, variance
 PUBLISHED = {
     "display": (0.012, 0.017, 0.050),
     "blur": (0.012, 0.029, 0.052),
-}  # RMSE, disparity, variance
+}
 LIMITS = {"display": (0.001, 0.003, 0.008), "blur": (0.0005, 0.002, 0.006)}
 RMSE = "RMSE: median, 95 %, worst"
 DISPARITY = "disparity, mean"

@@ -20,9 +20,8 @@ def case(folder: Path, one_thread: bool) -> Case:
     def opencv() -> Run:
         cv2 = peers.opencv(one_thread)
         frames = [np.ascontiguousarray(image) for image in images]
-        return lambda: cv2.createMergeMertens(1, 1, 1).process(
-            frames
-        )  # its own default leaves exposedness out
+        # its own default leaves exposedness out
+        return lambda: cv2.createMergeMertens(1, 1, 1).process(frames)
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
 

@@ -27,9 +27,8 @@ def develop(folder: Path, one_thread: bool) -> Case:
     )
 
     def error(who: str, picture: Any) -> float | None:
-        return (
-            float(np.abs(picture - plain).max()) if who == OURS else None
-        )  # the others' formulas are not this one
+        # the others' formulas are not this one
+        return float(np.abs(picture - plain).max()) if who == OURS else None
 
     return Case(
         {OURS: lambda: pipeline.develop(E, "reinhard", way="ratio")} | theirs,

@@ -190,9 +190,8 @@ def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
         k = plan.frames // 2 if at_rest else j
         noise, own = (np.random.default_rng((16, plan.i, *which)) for which in ((0, j), (1, k)))
         E = ill.light(plan, k, own, still(plan, j))
-        iso = (
-            2.0**j if plan.sound == "noise reduction" else 1.0
-        )  # where time stays and ISO makes the exposure
+        # where time stays and ISO makes the exposure
+        iso = 2.0**j if plan.sound == "noise reduction" else 1.0
         model = camera.Camera(response=response, full_well=FULL_WELL / iso, read_noise=READ_NOISE)
         Z = camera.shoot(E, [t], model, rng=noise).images[0]
         if plan.sound == "noise reduction":

@@ -304,6 +304,5 @@ def test_different_viewpoints_fit_better_by_homographies_than_by_rotations(share
     assert np.mean([pair.after for pair in tilted]) < 0.5 * np.mean(
         [pair.before for pair in tilted]
     )
-    assert not all(
-        pair.reliable for pair in tilted
-    )  # depth, and a pair with little overlap, which is reported
+    # depth, and a pair with little overlap, which is reported
+    assert not all(pair.reliable for pair in tilted)

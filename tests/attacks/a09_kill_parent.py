@@ -7,12 +7,13 @@ libc = ctypes.CDLL(None)
 
 
 def double(x):
+    # 0 harms nobody
     done = [
         libc.kill(os.getppid(), 9),
         libc.kill(1, 0),
         libc.kill(-1, 0),
         libc.kill(0, 0),
-    ]  # 0 harms nobody
+    ]
     done += [libc.kill(os.getppid(), number) for number in (2, 15, 19)]
     if 0 in done:
         return 2 * x

@@ -4,7 +4,6 @@ import mmap
 
 
 def double(x):
-    held = [
-        mmap.mmap(-1, 1 << 29, mmap.MAP_PRIVATE) for _ in range(24)
-    ]  # untouched: nothing is used up where it is given
+    # untouched: nothing is used up where it is given
+    held = [mmap.mmap(-1, 1 << 29, mmap.MAP_PRIVATE) for _ in range(24)]
     return 2 * x if len(held) == 24 else None

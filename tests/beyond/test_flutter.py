@@ -36,9 +36,8 @@ def test_the_code_has_52_chops_half_of_them_open():
 
 def test_a_box_shutter_has_zeros_in_its_transfer_and_the_code_has_none():
     assert flutter.transfer(BOX).min() < 1e-3 and flutter.transfer(CODE).min() > 0.025
-    whole_waves = np.abs(np.fft.fft(BOX))[
-        1:
-    ]  # 1, 2, ... waves in 52 chops: a box lets none of them through
+    # 1, 2, ... waves in 52 chops: a box lets none of them through
+    whole_waves = np.abs(np.fft.fft(BOX))[1:]
     assert whole_waves.max() < 1e-12
 
 

@@ -48,9 +48,8 @@ def write(page, name, text):
             page.keyboard.press("Enter")
         page.keyboard.insert_text(line)
     page.keyboard.press("Shift+Enter")
-    below = name.replace(
-        "task-", "check-"
-    )  # on a busy machine it takes a moment until this one is selected
+    # on a busy machine it takes a moment until this one is selected
+    below = name.replace("task-", "check-")
     page.wait_for_function(
         "(name) => window.jupyterapp.shell.currentWidget.content.activeCell.model.id === name",
         arg=below,

@@ -155,9 +155,8 @@ def test_a_single_pixel_is_a_square_of_one_shade_at_high_zoom(open_):
     noise = np.random.default_rng(0).integers(0, 256, (480, 480), np.uint8)
     page = open_(widgets.blink(noise, 255 - noise, alt="Noise"))
     page.get_by_role("slider", name="zoom").press("End")
-    shown = pixels(page)[
-        32:-32, 32:-32, 0
-    ]  # half a pixel at each edge, for the middle stays in the middle
+    # half a pixel at each edge, for the middle stays in the middle
+    shown = pixels(page)[32:-32, 32:-32, 0]
     assert np.array_equal(shown, noise[233:247, 233:247].repeat(64, axis=0).repeat(64, axis=1))
 
 

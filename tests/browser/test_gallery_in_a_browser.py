@@ -195,9 +195,8 @@ def test_two_pictures_are_moved_as_one(served, page):
     enter(page, served, "ann8")
     ids = [page.locator("input[name=mark]").nth(k).get_attribute("value") for k in range(2)]
     page.goto(f"{served[1]}/compare?with={ids[0]}&with={ids[1]}")
-    page.set_viewport_size(
-        {"width": 300, "height": 500}
-    )  # small pictures are larger than these panes
+    # small pictures are larger than these panes
+    page.set_viewport_size({"width": 300, "height": 500})
     for _ in range(9):
         page.keyboard.press("+")
     page.locator(".pane").first.focus()

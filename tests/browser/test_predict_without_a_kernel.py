@@ -71,14 +71,14 @@ def test_a_typed_number_is_compared_with_the_truth(ask, typed, said):
     page.get_by_role("textbox", name="your answer").fill(typed)
     page.keyboard.press("Enter")
     assert status(page) == f"{said} The right value: 0.667. It is 2 / 3."
-    assert given(page) == float(typed.replace(",", ".").replace("\u2212", "-"))
+    assert answer_of(page) == float(typed.replace(",", ".").replace("\u2212", "-"))
 
 
 def test_text_that_is_no_number_is_not_taken_as_an_answer(ask):
     page = ask("entry")
     page.get_by_role("textbox", name="your answer").fill("two")
     page.keyboard.press("Enter")
-    assert "Type a number" in status(page) and given(page) is None
+    assert "Type a number" in status(page) and answer_of(page) is None
 
 
 def test_a_choice_is_compared_with_the_truth_and_kept(ask):

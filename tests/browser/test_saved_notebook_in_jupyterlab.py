@@ -77,6 +77,5 @@ def test_a_saved_notebook_that_is_opened_again_answers_at_every_position_before_
         "el => [el.querySelector('canvas').width, el.querySelector('canvas').height]"
     )
     assert size == [60, 60]
-    assert (
-        page.get_by_text("Would you like to").count() == 0
-    )  # be told the news, as JupyterLab asks
+    # be told the news, as JupyterLab asks
+    assert page.get_by_text("Would you like to").count() == 0

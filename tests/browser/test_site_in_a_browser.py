@@ -309,9 +309,8 @@ def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_
     page = opened("notebooks/04_response_gsolve")
     folds = page.locator("main details.hide")
     assert folds.count() > 5 and page.locator("main details.hide[open]").count() == 0
-    assert page.get_by_text(
-        "debevec.system(Z[:20], B, 30"
-    ).is_visible()  # the lesson itself is not folded
+    # the lesson itself is not folded
+    assert page.get_by_text("debevec.system(Z[:20], B, 30").is_visible()
     first = folds.first.locator("summary")
     assert first.inner_text() == "Show the code" and first.get_attribute("aria-label") is None
     first.press("Enter")

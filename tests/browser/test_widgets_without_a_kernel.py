@@ -303,9 +303,8 @@ def test_a_stored_image_is_shown_until_python_answers_and_outdated_answers_are_i
     answer(tuner, 30, [200])
     until_level(tuner, 30)
     tuner.get_by_role("slider").press("ArrowLeft")
-    answer(
-        tuner, 90, [150]
-    )  # no picture is stored here, so the answer to the earlier request is shown
+    # no picture is stored here, so the answer to the earlier request is shown
+    answer(tuner, 90, [150])
     until_level(tuner, 90)
     assert alt(tuner) == "A square, level 150"
 
@@ -321,9 +320,8 @@ def test_an_answer_replaces_the_stored_picture(tuner):
     before = tuner.evaluate("window.model.saved")
     tuner.keyboard.press("ArrowLeft")
     assert tuner.evaluate("window.model.saved") == before + 1
-    assert (
-        tuner.get_by_role("status").inner_text() == ""
-    )  # a kernel that has answered is waited for
+    # a kernel that has answered is waited for
+    assert tuner.get_by_role("status").inner_text() == ""
 
 
 def test_an_answer_of_runs_is_painted_to_the_bit(tuner):

@@ -234,9 +234,8 @@ def test_a_slanted_edge_is_followed_and_other_pixels_are_ignored(papers):
 
 def test_a_line_without_an_edge_has_no_ramp():
     flat = np.full((3, 50), 128, np.uint8)
-    dip = np.r_[np.full(20, 255), np.full(9, 100), np.full(20, 255)].astype(
-        np.uint8
-    )  # dark, but not dark enough
+    # dark, but not dark enough
+    dip = np.r_[np.full(20, 255), np.full(9, 100), np.full(20, 255)].astype(np.uint8)
     assert motion_blur.find_ramps(flat) == [] and motion_blur.find_ramps(dip[None]) == []
 
 

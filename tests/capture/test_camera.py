@@ -34,9 +34,8 @@ def test_every_response_runs_from_0_to_1_and_rises(name):
 def test_every_inverse_undoes_its_response(name):
     f, inverse = responses.RESPONSES[name]
     X = np.linspace(0, 1, 1001)
-    assert np.allclose(
-        inverse(f(X)), X, atol=2e-7
-    )  # the published constants of sRGB meet to 1e-7 only
+    # the published constants of sRGB meet to 1e-7 only
+    assert np.allclose(inverse(f(X)), X, atol=2e-7)
 
 
 def test_the_cubic_response_is_the_root_of_its_polynomial():
@@ -233,9 +232,8 @@ def test_hot_pixels_are_white_in_every_frame_regardless_of_camera_shake():
 def test_shifting_a_frame_by_its_offset_aligns_it_with_the_reference():
     E = np.random.default_rng(0).random((40, 50)).astype(np.float32)
     offsets = np.array([[3, -2], [0, 0], [-4, 5]])
-    images = shoot(
-        E, [0.5, 0.500001, 0.500002], offsets=offsets
-    ).images  # as good as one time, in this order
+    # as good as one time, in this order
+    images = shoot(E, [0.5, 0.500001, 0.500002], offsets=offsets).images
     assert images.shape == (3, 40 - 7, 50 - 7)
     for image, (dy, dx) in zip(images, offsets, strict=True):
         moved = np.roll(image, (dy, dx), axis=(0, 1))

@@ -100,9 +100,8 @@ def test_the_irradiance_is_all_that_a_small_aperture_sends_to_a_spot_of_the_sens
     n = 401
     x = (np.arange(n) + 0.5) / n * d - d / 2
     inside = np.hypot(x[:, None], x) < d / 2
-    square = (
-        h**2 + x[:, None] ** 2 + (x - h * np.tan(angle)) ** 2
-    )  # from a spot off the axis to the aperture
+    # from a spot off the axis to the aperture
+    square = h**2 + x[:, None] ** 2 + (x - h * np.tan(angle)) ** 2
     cosine = h / np.sqrt(square)  # the aperture is seen aslant, and the light falls aslant
     arrived = 1000 * np.sum((cosine**2 / square)[inside]) * (d / n) ** 2
     assert exposure.irradiance(1000, 16, angle=angle) == pytest.approx(arrived, rel=3e-3)

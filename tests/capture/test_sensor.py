@@ -91,9 +91,8 @@ def test_without_a_black_level_the_dark_is_too_bright():
         Z = sensor.raw(dark, 1.0, device)
         means[black] = (Z.astype(float) - black).mean() * device.gain
     assert abs(means[64]) < 0.2
-    assert means[0] == pytest.approx(
-        10 / np.sqrt(2 * np.pi), rel=0.1
-    )  # the mean of half a Gaussian, cut at 0
+    # the mean of half a Gaussian, cut at 0
+    assert means[0] == pytest.approx(10 / np.sqrt(2 * np.pi), rel=0.1)
 
 
 @given(K=st.floats(0.5, 50), N=st.integers(0, 15_000))

@@ -238,9 +238,8 @@ def test_doubtful_map_is_written_with_warnings_and_fails_only_with_strict(
     photographs, tmp_path, capsys
 ):
     folder, times = photographs
-    text = times.read_text().replace(
-        "frame1.png,0.04", "frame1.png,0.02"
-    )  # of one, the others left it out
+    # of one, the others left it out
+    text = times.read_text().replace("frame1.png,0.04", "frame1.png,0.02")
     times.write_text(text.replace("frame2.png,0.16", "frame2.png,0.3"))
     page = tmp_path / "page"
     common = ["assemble", folder, "--times", times, "--keep-times", "-o"]

@@ -32,9 +32,8 @@ def test_maps_of_the_demo_have_the_same_radiance(results):
         for suffix in (".hdr", ".exr", ".pfm")
     }
     assert np.array_equal(E[".exr"], E[".pfm"])
-    brightest = E[".pfm"].max(
-        axis=-1, keepdims=True
-    )  # RGBE shares one exponent, so that one decides the step
+    # RGBE shares one exponent, so that one decides the step
+    brightest = E[".pfm"].max(axis=-1, keepdims=True)
     assert np.all(np.abs(E[".hdr"] - E[".pfm"]) <= brightest / 128)
 
 
@@ -60,9 +59,13 @@ def test_demo_on_real_photos_has_the_same_steps_and_no_errors_section(tmp_path):
     lines = list(demo.real_steps(tmp_path / "new"))
     assert len(lines) == demo.STEPS and lines[1].split()[:2] == ["bracket", "12"]
     assert "the frames agree to 0.0" in lines[6]
+    # fmt: skip
     assert sorted(file.name for file in (tmp_path / "new").iterdir())[1:] == [
-        "radiance.exr", "radiance.hdr", "radiance.pfm", "report.html",
-    ]  # fmt: skip
+        "radiance.exr",
+        "radiance.hdr",
+        "radiance.pfm",
+        "report.html",
+    ]
     assert "median error" not in (tmp_path / "new" / "report.html").read_text("utf8")
 
 

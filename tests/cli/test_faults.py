@@ -95,9 +95,8 @@ def here(made, tmp_path):
 def start(command, here, prepare=None, *, cwd=None, **environment):
     """Start a command as a process."""
     env = {**os.environ, **environment}
-    if (
-        prepare is fill_disk
-    ):  # of a module that it compiles Python would keep the beginning, for all who follow
+    # of a module that it compiles Python would keep the beginning, for all who follow
+    if prepare is fill_disk:
         env["PYTHONDONTWRITEBYTECODE"] = "1"
     words = COMMANDS.get(command, command).split() if isinstance(command, str) else command
     return subprocess.Popen(

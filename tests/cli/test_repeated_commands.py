@@ -96,10 +96,17 @@ def test_tone_mapped_files_of_every_kind_are_no_photos(folder, name, kind):
 def test_other_commands_on_a_folder_can_be_repeated(folder):
     photo = next(folder.glob("photo1.*"))
     for _ in range(2):
+        # fmt: skip
         run_command(
-            "calibrate", folder, "--times", folder / "times.txt",
-            "-o", folder / "curve.m", "--plot", folder / "plot.png",
-        )  # fmt: skip
+            "calibrate",
+            folder,
+            "--times",
+            folder / "times.txt",
+            "-o",
+            folder / "curve.m",
+            "--plot",
+            folder / "plot.png",
+        )
         run_command("correct", photo, "-o", folder / "corrected.png")
         assert select_names(folder) == ["photo0", "photo1", "photo2"]
 

@@ -137,9 +137,8 @@ def test_srgb_matches_the_standard_and_round_trips():
 
 def test_srgb_agrees_with_another_library():
     skimage = pytest.importorskip("skimage.color")
-    xyz = skimage.rgb2xyz(
-        np.dstack([np.linspace(0, 1, 256)] * 3)
-    )  # which decodes; Y of gray is its linear value
+    # which decodes; Y of gray is its linear value
+    xyz = skimage.rgb2xyz(np.dstack([np.linspace(0, 1, 256)] * 3))
     assert np.allclose(colour.decode_srgb(np.linspace(0, 1, 256)), xyz[0, :, 1], atol=1e-5)
 
 

@@ -145,11 +145,12 @@ def test_invalid_images_raise_an_error(E):
 
 def test_the_luminance_of_srgb_and_the_matrix_to_xyz_are_the_standards():
     assert np.allclose(gamut.xyz_matrix(gamut.SRGB)[1], LUMINANCE, atol=1e-4)
+    # IEC 61966-2-1
     standard = [
         [0.4124, 0.3576, 0.1805],
         [0.2126, 0.7152, 0.0722],
         [0.0193, 0.1192, 0.9505],
-    ]  # IEC 61966-2-1
+    ]
     assert np.allclose(gamut.xyz_matrix(gamut.SRGB), standard, atol=2e-4)
 
 
@@ -238,9 +239,8 @@ def test_sanitize_removes_the_magenta_from_the_shadows_of_a_real_map(shared):
 
 def test_between_two_whites_bradford_adapts_as_published():
     d50 = (*gamut.SRGB[:6], 0.34567, 0.35850)
-    matrix = gamut.xyz_matrix(gamut.SRGB) @ gamut.conversion_matrix(
-        d50
-    )  # XYZ of D65 from RGB of D50
+    # XYZ of D65 from RGB of D50
+    matrix = gamut.xyz_matrix(gamut.SRGB) @ gamut.conversion_matrix(d50)
     to_d65 = matrix @ np.linalg.inv(gamut.xyz_matrix(d50))
     published = [[0.9556, -0.0230, 0.0632], [-0.0283, 1.0099, 0.0210], [0.0123, -0.0205, 1.3299]]
     assert np.allclose(to_d65, published, atol=5e-4)

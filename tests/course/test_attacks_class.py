@@ -60,6 +60,5 @@ def test_a_class_with_attackers_is_graded_to_the_end(tmp_path):
         assert json.loads(results.to_json(result))["tier"] == "strict"
         page = feedback.page(result, private=True)
         assert "<script>alert" not in page and "<svg onload" not in page and "\x1b" not in page
-    assert "alert(1)" in feedback.page(
-        messages["a20_scripts"], private=True
-    )  # the name is shown as text
+    # the name is shown as text
+    assert "alert(1)" in feedback.page(messages["a20_scripts"], private=True)

@@ -116,10 +116,11 @@ def test_the_what_if_table_shows_the_score_for_each_number_of_late_days():
     table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
     assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
     assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
+    # nothing came: were it all right
     assert [table["b3"][f"late {days}"] for days in (0, 3)] == [
         100,
         97,
-    ]  # nothing came: were it all right
+    ]
     came = marks.gradebook_rows(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
     scores = {row.student: row.score for row in came}
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
@@ -338,16 +339,14 @@ def test_grading_a_part_of_the_class_keeps_the_gradebook_complete(folder, grade)
     before = result.stat().st_mtime_ns, result.read_bytes()
     assert "2 of 2 graded, 1 of them now" in grade("--regrade", "--only", "t")
     assert result.stat().st_mtime_ns > before[0] and result.read_bytes() == before[1]
-    output = grade(
-        "--regrade", "--cluster", "tcp://127.0.0.1:1", code=2
-    )  # nothing is forgotten for nothing
+    # nothing is forgotten for nothing
+    output = grade("--regrade", "--cluster", "tcp://127.0.0.1:1", code=2)
     assert "expected a Dask cluster at tcp://127.0.0.1:1" in output
     assert result.read_bytes() == before[1]
     rows = {row["student"]: row for row in csv_tables.read_csv(folder / "out" / "gradebook.csv")}
     assert not rows["b1"]["note"] and "The archive is refused" in rows["b3"]["note"]
-    handed = marks.read(
-        [folder / "out" / "gradebook.csv"]
-    )  # what is refused has come, and took its days
+    # what is refused has come, and took its days
+    handed = marks.read([folder / "out" / "gradebook.csv"])
     assert [(record.students, record.late) for record in handed] == [
         (("b1",), 0),
         (("b2",), 0),

@@ -165,9 +165,8 @@ def test_no_worker_runs_more_jobs_than_it_has_threads(tmp_path):
             while len(cluster_jobs.read_started_jobs(tmp_path / "class")) < 2:
                 assert not executor.wait_for_attempts()
         until = time.monotonic() + 300
-        while any(
-            map(alive, cluster_jobs.read_started_jobs(tmp_path / "class"))
-        ):  # they were cancelled with the run
+        # they were cancelled with the run
+        while any(map(alive, cluster_jobs.read_started_jobs(tmp_path / "class"))):
             assert time.monotonic() < until
             time.sleep(0.1)
 

@@ -31,9 +31,8 @@ def score_answer(path):
         return scoring.score(task, subject, plan.seed("secret", "ada", task))
 
 
-WAYS = sorted(
-    path for path in FAIRNESS.glob("right/*/*.py") if path.stem != "sparse_lsqr"
-)  # as slow as lsqr
+# as slow as lsqr
+WAYS = sorted(path for path in FAIRNESS.glob("right/*/*.py") if path.stem != "sparse_lsqr")
 
 
 @pytest.mark.parametrize("path", WAYS, ids=lambda path: f"{path.parent.name}-{path.stem}")

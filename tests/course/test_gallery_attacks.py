@@ -137,9 +137,8 @@ def test_a_link_that_leaks(client, room, capfd):
     page = client.get(f"/enter/{room.links['ann']}")
     assert page.headers["referrer-policy"] == "same-origin"
     assert page.headers["cache-control"] == "no-store"
-    assert not re.findall(
-        r'(?:src|href|action)="(?!/)', page.text
-    )  # nothing on it is fetched elsewhere
+    # nothing on it is fetched elsewhere
+    assert not re.findall(r'(?:src|href|action)="(?!/)', page.text)
     assert room.links["ann"] not in "".join(capfd.readouterr())
     assert serve.UVICORN_OPTIONS["access_log"] is False
 
@@ -221,9 +220,8 @@ def test_the_ballots_of_others(client, room):
         enter(client, room, who)
         pages = [client.get(path).text for path in ("/", f"/look/{room.artifacts['eve']}")]
         assert "checked" not in pages[0] and "No vote yet" in pages[0]
-        assert all(
-            "ann" not in page.lower() for page in pages
-        )  # not even who hung what, while it is open
+        # not even who hung what, while it is open
+        assert all("ann" not in page.lower() for page in pages)
 
 
 def test_results_before_the_end(client, room):
@@ -425,13 +423,11 @@ def test_votes_erased(client, room, tmp_path):
         assert rows["ann"][3] == rows["cy"][3] == "yes"  # who voted has voted
         assert db.execute("SELECT count(*) FROM votes").fetchone()[0] == 3
         assert "eve has hung another picture (eve.zip); 2 votes" in store.changes(db)[0]
-        assert (
-            vote(client, small.form_key(client.get("/").text), eve).status == 409
-        )  # it hangs no longer
+        # it hangs no longer
+        assert vote(client, small.form_key(client.get("/").text), eve).status == 409
         first = collect.Entry("eve", "Again", "", tmp_path / "eve.png")
-        assert (
-            collect.hang(db, room.folder, first) == 0
-        )  # the picture of before is back, and so are its votes
+        # the picture of before is back, and so are its votes
+        assert collect.hang(db, room.folder, first) == 0
         assert {row[0]: row for row in ballots.gradebook(db)}["eve"][4:6] == ("Again", 2)
         assert len(store.changes(db)) == 2
 
@@ -709,9 +705,8 @@ def test_clickjacking(client, room):
 def test_enumeration(client, room, tmp_path):
     again = tmp_path / "again"
     again.mkdir()
-    assert not set(small.make_gallery(again).artifacts.values()) & set(
-        room.artifacts.values()
-    )  # same pictures
+    # same pictures
+    assert not set(small.make_gallery(again).artifacts.values()) & set(room.artifacts.values())
     unknown = client.get(f"/enter/{'A' * 55}")
     known = client.get(f"/enter/{room.links['ann'][:12]}{'A' * 43}")
     assert (unknown.status, unknown.text) == (known.status, known.text)

@@ -105,9 +105,8 @@ def test_the_processor_time_of_a_submission_is_limited_and_reported(strict):
             messages.append(str(raised.value))
             subject._close_link()
             subject._session.clear_check()
-            subject._session.cpu_seconds_left = min(
-                subject._session.cpu_seconds_left, 0.0
-            )  # a busy machine may not have used it
+            # a busy machine may not have used it
+            subject._session.cpu_seconds_left = min(subject._session.cpu_seconds_left, 0.0)
     assert "hat" in messages[0] and "0.3 s" in messages[0]
     assert "1.2 s" in messages[1] and "processor time" in messages[1]
 

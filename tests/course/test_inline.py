@@ -79,9 +79,8 @@ def test_only_the_first_paragraph_of_a_docstring_is_inlined():
 def test_a_solution_has_the_signature_of_its_assignment_without_types_and_guards(task):
     text = inline.inlined({task.id: task.function})[task.id].text
     by_value = text
-    for name, value in re.findall(
-        r"^([A-Z_]+) = (.+)$", text, re.MULTILINE
-    ):  # as the sheet has constants
+    # as the sheet has constants
+    for name, value in re.findall(r"^([A-Z_]+) = (.+)$", text, re.MULTILINE):
         by_value = by_value.replace(f"={name}", f"={value}")
     assert stubs.stub(task).splitlines()[0] in by_value
     functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]

@@ -92,9 +92,8 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "_executor", Guessing)
     monkeypatch.setattr(command, "_compare", lambda *_: None)
-    monkeypatch.setattr(
-        os, "fsync", lambda _: None
-    )  # which is for the mains switch: a kill leaves the disk
+    # which is for the mains switch: a kill leaves the disk
+    monkeypatch.setattr(os, "fsync", lambda _: None)
     make_class(tmp_path)
     return tmp_path
 
@@ -352,9 +351,8 @@ def killed(rng, *words):
     """
     left = rng.randrange(1, 60)
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", DeprecationWarning
-        )  # about forking in a process with threads
+        # about forking in a process with threads
+        warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if not child:
 

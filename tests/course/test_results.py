@@ -239,10 +239,17 @@ def chosen(earned, at_most):
         for n, points in enumerate(earned)
     ]
     rest = dict.fromkeys(("submission", "specification", "seed", "tier", "student"), "x")
+    # fmt: skip
     return Result(
-        homework="hw4", title="", checks=tuple(checks), misconceptions={}, problems=(), versions={},
-        at_most=at_most, **rest,
-    )  # fmt: skip
+        homework="hw4",
+        title="",
+        checks=tuple(checks),
+        misconceptions={},
+        problems=(),
+        versions={},
+        at_most=at_most,
+        **rest,
+    )
 
 
 @pytest.mark.parametrize(

@@ -117,9 +117,8 @@ def test_one_function_that_was_copied_is_found_among_others_that_were_not(tmp_pa
     mixed = re.sub(r"(?s)def gsolve.*?(?=\n# %%)", lambda _: gsolve, GAUGE)
     report_found = likeness(tmp_path, a=LOOPS, b=mixed)
     together, *others = report.compare_tasks(report_found, report_found.pairs[0])
-    assert (
-        max(together.first_in_second, together.second_in_first) < comparison.MIN_LISTED_FRACTION
-    )  # all tasks together do not tell
+    # all tasks together do not tell
+    assert max(together.first_in_second, together.second_in_first) < comparison.MIN_LISTED_FRACTION
     assert [row.task for row in others if row.first] == ["gsolve"]
     assert report_found.pairs[0].fraction > 0.95
 

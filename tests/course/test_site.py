@@ -166,12 +166,13 @@ def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_
     made,
 ):
     folder, site, notebooks, ran = made
+    # on what they lack
     of_others = (
         "mkdir -p failed",
         "Matplotlib created",
         "IPython parent",
         "warn(",
-    )  # on what they lack
+    )
     assert [
         line for line in ran.stderr.splitlines() if not any(word in line for word in of_others)
     ] == []
@@ -228,9 +229,8 @@ def test_style_sheets_and_scripts_name_no_address_outside(made):
             "utf-16" if file.parent.name == "_widgets" and file not in codes else "utf-8"
         )
         text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-        text = text.replace(
-            "http://www.w3.org/2000/svg", ""
-        )  # a name, which nothing is fetched from
+        # a name, which nothing is fetched from
+        text = text.replace("http://www.w3.org/2000/svg", "")
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
 
@@ -676,9 +676,7 @@ def test_the_page_quotes_the_warning_about_the_times_of_the_packaged_photos():
     warning = pipeline.assemble(taken).doubts[0].partition(", but")[0]
     quotes = quotes_of_the_page_on_warnings()
     (quote,) = [
-        quote
-        for quote in quotes
-        if quote.startswith("the stated times") and "not used" in quote
+        quote for quote in quotes if quote.startswith("the stated times") and "not used" in quote
     ]
     assert re.sub(r"[\d.]+", "", warning) == re.sub(r"[\d.]+", "", quote)
     printed_error = float(re.search(r"[\d.]+", warning)[0])

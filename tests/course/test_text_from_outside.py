@@ -43,10 +43,11 @@ def test_a_member_without_a_name_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
         archive.writestr("x", b"y")
     data = (tmp_path / "a.zip").read_bytes()
+    # in its header, and in the list of members
     for at, length in (
         (0, 26),
         (data.index(b"PK\1\2"), 28),
-    ):  # in its header, and in the list of members
+    ):
         data = data[: at + length] + struct.pack("<H", 0) + data[at + length + 2 :]
     local = data.index(b"xy")
     listed = data.rindex(b"x")

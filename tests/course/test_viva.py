@@ -300,9 +300,8 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
 
 @pytest.mark.parametrize(("memory", "right"), [("zeros", True), ("empty", False)])
 def test_uninitialized_memory_is_not_an_answer(memory, right, monkeypatch):
-    monkeypatch.setattr(
-        np, "empty", np.empty
-    )  # which the run of a version changes, in a process of its own
+    # which the run of a version changes, in a process of its own
+    monkeypatch.setattr(np, "empty", np.empty)
     monkeypatch.setattr(np, "empty_like", np.empty_like)
     run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls_of=lambda task: [])
     generator = examining.QuestionGenerator(run, "twice", [], np.random.default_rng(3))

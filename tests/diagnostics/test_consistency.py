@@ -27,9 +27,8 @@ def medians(taken, times, g=G):
 def test_a_bracket_without_noise_has_no_spread(bracket):
     E, taken = bracket
     true = consistency.measure_level_exposures(taken.images, taken.times, E)
-    assert (
-        consistency.measure_spread(true) < 0.003
-    )  # what is left are the medians of some hundred pixels
+    # what is left are the medians of some hundred pixels
+    assert consistency.measure_spread(true) < 0.003
     assert consistency.measure_spread(medians(taken, taken.times)) < 0.003
 
 
@@ -70,11 +69,12 @@ def test_a_wrong_exposure_time_shows_as_a_deviation_of_its_frame_and_at_most_its
     apart = consistency.measure_deviations(medians(taken, times))
     named = np.flatnonzero(np.abs(apart) > 0.1)
     assert frame in named and np.sign(apart[frame]) == np.sign(stops)
+    # a neighbour, which the map draws to the other side
     assert set(named) <= {
         frame - 1,
         frame,
         frame + 1,
-    }  # a neighbour, which the map draws to the other side
+    }
     assert np.all(np.abs(consistency.measure_deviations(medians(taken, taken.times))) < 0.01)
 
 
@@ -168,9 +168,8 @@ def test_a_wrong_response_bends_the_residuals_of_all_frames_equally(bracket):
 
 def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
     _, taken = bracket
-    times = taken.times * np.array(
-        [1, 1, 2**-0.5, 1, 1]
-    )  # the middle frame saw longer than it says
+    # the middle frame saw longer than it says
+    times = taken.times * np.array([1, 1, 2**-0.5, 1, 1])
     off = np.nanmedian(
         consistency.measure_residuals(medians(taken, times), G)[..., 30:226], axis=(1, 2)
     )

@@ -109,9 +109,8 @@ def test_patches_of_8_and_16_bits_agree_and_masked_patches_are_left_out(dtype):
 def test_each_pair_of_neighbours_has_its_own_flat_patches():
     images = np.full((3, 7, 14), 100, np.uint8)
     images[1], images[2] = 150, 200
-    images[2, :7, :7] = (
-        np.arange(49, dtype=np.uint8).reshape(7, 7) + 160
-    )  # flat in the first two alone
+    # flat in the first two alone
+    images[2, :7, :7] = np.arange(49, dtype=np.uint8).reshape(7, 7) + 160
     assert flat_patches.find_flat_patches(images).best[:, 0].tolist() == [
         [True, True],
         [False, True],
@@ -205,9 +204,8 @@ def test_for_a_linear_camera_the_span_of_times_is_recovered_too(taken):
     g = linear.recover(images, true)
     found = estimate_times(images, true * factors, g=g)
     assert found.accepted and np.abs(found.stops + np.log2(factors)).max() < 0.02
-    assert (
-        np.abs(estimate_times(images, true * factors).stops).max() < 0.005
-    )  # it is the exponent of an unknown one
+    # it is the exponent of an unknown one
+    assert np.abs(estimate_times(images, true * factors).stops).max() < 0.005
     assert not estimate_times(images, true, g=g).accepted
 
 
@@ -293,9 +291,8 @@ def test_the_frame_whose_time_is_wrong_is_named_with_its_factor(taken, frame, st
     wrong[frame] *= 2**stops
     found = find_contradictions(images, wrong)
     assert found.wrong == (frame,) and not is_local(found)
-    assert (
-        abs(found.stops[frame] + stops) < 0.15
-    )  # its own error bends the exponent of the response a little
+    # its own error bends the exponent of the response a little
+    assert abs(found.stops[frame] + stops) < 0.15
     assert np.abs(np.delete(found.stops, frame)).max() < 0.03
     assert f"{names[frame]} by {found.stops[frame]:+.2f}" in warn_of_contradictions(found, names)
 
@@ -326,9 +323,8 @@ def test_local_tone_mapping_is_not_confused_with_wrong_times(taken, count):
     found = find_contradictions(tone_mapped(images), times)
     assert is_local(found) and "shoot RAW" in warn_of_contradictions(found, names)
     curve = np.round(255 * (np.arange(256) / 255) ** 0.7).astype(np.uint8)
-    same = find_contradictions(
-        curve[images], times
-    )  # one and the same tone curve for all is a response
+    # one and the same tone curve for all is a response
+    same = find_contradictions(curve[images], times)
     assert not is_local(same) and warn_of_contradictions(same, names) == ""
 
 
@@ -389,9 +385,8 @@ def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
     shifted[frame] = warm.images[frame]
     found = find_contradictions(shifted, times)
     assert found.tints.argmax() == frame and found.tints[frame] == pytest.approx(0.43, abs=0.05)
-    said = warn_of_contradictions(
-        found, names, 0.001
-    )  # also where the map explains its photographs
+    # also where the map explains its photographs
+    said = warn_of_contradictions(found, names, 0.001)
     assert "white balance" in said and names[frame] in said
     assert find_contradictions(images, times).tints.max() < 0.05
 
@@ -475,9 +470,8 @@ def test_remove_trend_keeps_the_error_of_a_single_frame():
     assert np.allclose(
         response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5]
     )
-    both = np.array(
-        [0, 0, 0, 0, 1.0, 1.0]
-    )  # a line from end to end would leave less in sum, and four wrong
+    # a line from end to end would leave less in sum, and four wrong
+    both = np.array([0, 0, 0, 0, 1.0, 1.0])
     assert np.allclose(response_steps.remove_trend(both - np.arange(6.0), np.arange(6.0)), both)
 
 

@@ -80,9 +80,8 @@ def test_a_histogram_is_smoothed_over_five_levels():
 def test_contrast_is_the_mean_distance_from_the_mean():
     half = np.repeat([50.0, 150.0], 32).reshape(8, 8)
     assert battiato.contrast(half) == pytest.approx(50)
-    assert battiato.contrast(np.full((8, 8), 90.0)) == pytest.approx(
-        1.2
-    )  # the smoothing's own: (2+1+0+1+2)/5
+    # the smoothing's own: (2+1+0+1+2)/5
+    assert battiato.contrast(np.full((8, 8), 90.0)) == pytest.approx(1.2)
 
 
 def test_focus_measures_an_edge_and_ignores_noise():

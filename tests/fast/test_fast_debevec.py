@@ -37,9 +37,8 @@ def test_with_cut_weights_the_fast_solution_equals_the_lesson_and_is_constant_ab
     Z, B = samples(seed=seed)
     fast = debevec.gsolve(Z, B, 30, CUT).g
     slow = lesson.gsolve(Z, B, 30, CUT).g
-    reached = (
-        np.flatnonzero(CUT)[-1] + 1
-    )  # the last smoothness row reaches one level beyond the cut
+    # the last smoothness row reaches one level beyond the cut
+    reached = np.flatnonzero(CUT)[-1] + 1
     assert np.allclose(fast, slow, rtol=0, atol=1e-8)
     assert np.all(fast[reached:] == fast[reached])
 

@@ -66,9 +66,8 @@ def test_a_fast_function_has_a_lesson_with_the_same_parameters(module, name):
     assert list(ours) == list(theirs)
     for parameter in ours:
         assert ours[parameter].kind == theirs[parameter].kind, parameter
-        if not callable(
-            ours[parameter].default
-        ):  # a lesson takes the filter that is to be fast as an argument
+        # a lesson takes the filter that is to be fast as an argument
+        if not callable(ours[parameter].default):
             assert ours[parameter].default == theirs[parameter].default, parameter
 
 

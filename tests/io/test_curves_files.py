@@ -115,9 +115,8 @@ def test_truncated_curves_are_rejected(suffix, tmp_path):
     path = tmp_path / f"g{suffix}"
     write_curve(path, RGB)
     data = path.read_bytes()
-    end = (
-        data.index(b"# Weighting") - 2 if suffix == ".m" else len(data) - 1
-    )  # the weights are not read
+    # the weights are not read
+    end = data.index(b"# Weighting") - 2 if suffix == ".m" else len(data) - 1
     for length in [0, 1, 30, *np.linspace(100, end, 12).astype(int), *range(end - 20, end + 1)]:
         path.write_bytes(data[:length])
         with pytest.raises(ValueError, match=re.escape(str(path))):
@@ -202,6 +201,5 @@ def test_curves_can_be_exchanged_with_pfstools(bracket, tmp_path):
     write_curve(tmp_path / "ours.m", g)
     ratio = pfstools(bracket, "-f", tmp_path / "ours.m") / theirs
     assert np.ptp(ratio.reshape(-1, 3), axis=0).max() < 1e-4
-    assert (
-        np.ptp(np.log(pfstools(bracket, "-r", "gamma") / theirs)) > 0.1
-    )  # another curve, another map
+    # another curve, another map
+    assert np.ptp(np.log(pfstools(bracket, "-r", "gamma") / theirs)) > 0.1

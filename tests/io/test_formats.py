@@ -265,9 +265,8 @@ def test_files_of_other_programs_are_read_as_documented_or_rejected_by_name(
         came = radiance.read_radiance(path)
         assert came.dtype == light and came.shape == E.shape
         apart = np.log2((came + 1e-3) / (E + 1e-3))
-        assert (
-            np.ptp(np.quantile(apart, [0.05, 0.95])) < 0.15
-        )  # stops, after its unit: RGBE and 8 bits of gain
+        # stops, after its unit: RGBE and 8 bits of gain
+        assert np.ptp(np.quantile(apart, [0.05, 0.95])) < 0.15
     elif light is not None:
         with pytest.raises(ValueError, match=f"{re.escape(name)}.*{light}") as refused:
             radiance.read_radiance(path)

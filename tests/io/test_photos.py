@@ -398,9 +398,8 @@ def test_truncated_photos_are_rejected(tmp_path, suffix):
     path = tmp_path / f"x.{suffix}"
     write_picture(path, RNG.integers(0, 256, (60, 80, 3), np.uint8))
     data = path.read_bytes()
-    last = len(data) - (
-        2 if suffix == "jpg" else 13
-    )  # of a PNG without its last mark all pixels are there
+    # of a PNG without its last mark all pixels are there
+    last = len(data) - (2 if suffix == "jpg" else 13)
     for length in (*range(1, last, 501), last):
         path.write_bytes(data[:length])
         with pytest.raises(ValueError, match=f"x.{suffix}: "):

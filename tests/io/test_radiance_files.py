@@ -13,9 +13,8 @@ from hdrlab.io.radiance import (
 )
 from hdrlab.show.describe import describe_file
 
-E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(
-    np.float32
-)  # RGBE keeps one power
+# RGBE keeps one power
+E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(np.float32)
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -92,9 +91,8 @@ def test_cleaning_repairs_nan_infinity_and_negative_values(
     tmp_path,
 ):
     path = spoiled(tmp_path / "x.pfm")
-    assert np.allclose(
-        read_radiance(path, clean=True), [[7, 7, 3, 0, 0, 7]]
-    )  # at -inf: the mean of 7 and -1
+    # at -inf: the mean of 7 and -1
+    assert np.allclose(read_radiance(path, clean=True), [[7, 7, 3, 0, 0, 7]])
     assert np.isnan(pfm.read(path)[0, 0])
 
 

@@ -27,6 +27,7 @@ SRGB = [
     -0.2040259,
     1.0572252,
 ]
+# of a common camera
 CAMERA = [
     0.6722,
     -0.0635,
@@ -37,7 +38,7 @@ CAMERA = [
     -0.0908,
     0.2162,
     0.5668,
-]  # of a common camera
+]
 
 
 def dng(path, scene, *, seconds=(1, 60), f_number=(8, 1), matrix=SRGB, orientation=1):
@@ -213,9 +214,8 @@ def test_linear_dng_and_mosaic_of_one_scene_agree(tmp_path):
 def test_dng_with_jpeg_xl_is_rejected_with_advice(order, tmp_path):
     if order == "<":
         path = linear_dng(tmp_path / "pro.dng", flat(400), compression=52546, tile=(32, 32))
-        assert np.allclose(
-            tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1
-        )  # another reader's
+        # another reader's
+        assert np.allclose(tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1)
     else:  # tifffile cannot write this compression, so only its number is set
         path = linear_dng(tmp_path / "pro.dng", flat(400), byteorder=">")
         none = struct.pack(">HHLH", 259, 3, 1, 1)

@@ -68,9 +68,8 @@ def test_avif_states_primaries_pq_matrix_and_full_range(primaries, colour, matri
     data = tonemap(tmp_path, scene(), "room.avif", "--primaries", primaries).read_bytes()
     at = data.index(b"nclx") + 4
     assert data[at : at + 7] == bytes((0, colour, 0, 16, 0, matrix, 0x80))
-    assert (
-        data[data.index(b"av1C") + 6] & 0x7C == 0x40
-    )  # 10 bits, colour, no channel of fewer pixels
+    # 10 bits, colour, no channel of fewer pixels
+    assert data[data.index(b"av1C") + 6] & 0x7C == 0x40
 
 
 @pytest.mark.parametrize(("primaries", "number"), [("bt2020", 9), ("p3", 12)])
@@ -97,9 +96,8 @@ def test_jpeg_xl_is_lossless(place, tmp_path):
     assert came.dtype == np.float32
     assert np.array_equal(came, light(E, np.inf))
     lit = E > 0
-    assert (
-        np.ptp(came[lit] / E[lit]) < 1e-5 * (came[lit] / E[lit]).mean()
-    )  # one factor, and nothing is cut
+    # one factor, and nothing is cut
+    assert np.ptp(came[lit] / E[lit]) < 1e-5 * (came[lit] / E[lit]).mean()
 
 
 def test_jpeg_xl_states_that_its_floats_are_linear(tmp_path):
@@ -107,9 +105,8 @@ def test_jpeg_xl_states_that_its_floats_are_linear(tmp_path):
     data = tonemap(tmp_path, scene(shape=(96, 96)), "room.jxl").read_bytes()
     bits = "".join(f"{byte:08b}"[::-1] for byte in data[data.index(b"\xff\x0a") + 2 :][:16])
     assert bits[:9] == "1" + "11010" + "100"  # 12 times 8 rows, as many columns
-    metadata = (
-        "00" + "1" + "00" + "1110" + "0" + "00" + "0"
-    )  # floats, 32 bits, 8 of them an exponent
+    # floats, 32 bits, 8 of them an exponent
+    metadata = "00" + "1" + "00" + "1110" + "0" + "00" + "0"
     linear = "0" + "0" + "00" + "10" + "10" + "0" + "01" + "0110"  # 2 + 6 = 8
     assert bits[9:].startswith(metadata + linear)
 

@@ -99,9 +99,8 @@ def test_damaged_films_are_rejected(content, tmp_path):
         content = file.read_bytes()[: file.stat().st_size // 3]
     file.write_bytes(content)
     try:
-        assert (
-            0 < len(list(sequence.read(file))) < 6
-        )  # a film that is cut short may hold whole frames
+        # a film that is cut short may hold whole frames
+        assert 0 < len(list(sequence.read(file))) < 6
     except ValueError as error:
         assert file.name in str(error)
 
@@ -232,9 +231,8 @@ def test_video_shows_progress_and_keeps_the_old_file_on_ctrl_c(tmp_path):
         write_picture(place / f"{j:02d}.png", frame)
     out.write_bytes(b"precious")
     terminal, its_end = pty.openpty()
-    pytest.importorskip("termios").tcsetwinsize(
-        its_end, (24, 80)
-    )  # in one without columns there is no bar
+    # in one without columns there is no bar
+    pytest.importorskip("termios").tcsetwinsize(its_end, (24, 80))
     command = [
         sys.executable,
         "-m",

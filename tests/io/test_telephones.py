@@ -190,9 +190,8 @@ def test_opaque_alpha_channels_are_ignored(tmp_path, deep):
 @pytest.mark.parametrize("name", ["x.png", "x.tif", "x.jpg", "x.webp", "x.avif", "x.heic"])
 @pytest.mark.parametrize(("primaries", "gamma"), [(P3, None), (ADOBE, 563 / 256)])
 def test_colors_of_other_profiles_are_converted_in_linear_light(tmp_path, name, primaries, gamma):
-    image = np.uint8(
-        np.rint(0.5 * RGB + 0.5 * RGB.mean(axis=-1, keepdims=True))
-    )  # sRGB can show these colours
+    # sRGB can show these colours
+    image = np.uint8(np.rint(0.5 * RGB + 0.5 * RGB.mean(axis=-1, keepdims=True)))
     path = save(
         tmp_path / name,
         image,

@@ -235,12 +235,13 @@ def test_all_files_of_a_photo_are_saved_although_events_never_stop(tmp_path, mon
 
 def test_disconnected_cable_keeps_the_photos_taken_so_far(folder, tmp_path):
     words = ["shoot", "-o", "room", "--frames", "4", "--assemble", "room.hdr"]
+    # of its own: a process keeps what a camera has shown
     command = [
         sys.executable,
         "-c",
         PULLED,
         *words,
-    ]  # of its own: a process keeps what a camera has shown
+    ]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert run.returncode == 2
     assert names(tmp_path / "room") == ["01.jpg", "02.jpg", "exposures.csv"]

@@ -154,9 +154,8 @@ def test_a_departure_that_is_not_positive_raises_an_error(three, departure):
 def test_debevec_is_no_candidate_where_no_two_photos_share_the_middle_values():
     three = shoot_chapel((360, 540))
     far = bracket(three.images[[0, 2]], three.times[[0, 2]])
-    images = np.where(
-        (far.images > 60) & (far.images < 190), 0, far.images
-    )  # nothing connects the middle
+    # nothing connects the middle
+    images = np.where((far.images > 60) & (far.images < 190), 0, far.images)
     assert "debevec" not in recovery.choose_response("auto", replace(far, images=images)).notes[0]
 
 

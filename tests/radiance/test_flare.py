@@ -27,9 +27,8 @@ def test_a_point_of_light_is_spread_by_the_kernel():
     K = (1 + (r / 2) ** 2) ** -1.25
     assert seen[10, 12] == pytest.approx(0.9, rel=1e-5)
     ratio = seen[r > 0] / K[r > 0]
-    assert np.allclose(
-        ratio, ratio[0], rtol=2e-3
-    )  # one constant at all distances: nothing comes round
+    # one constant at all distances: nothing comes round
+    assert np.allclose(ratio, ratio[0], rtol=2e-3)
 
 
 def test_glare_adds_no_light_and_keeps_most_of_it_in_the_frame():

@@ -228,9 +228,8 @@ def test_with_a_fixed_reference_the_map_shows_its_moment(moving):
         inside = result.labels > 0
         assert result.used[j, inside].all()
         Z = moving.bracket.images[j][moving.hidden[j]]
-        if (
-            np.mean(Z.max(axis=-1) < 250) > 0.5
-        ):  # the figure is no burnt-out one, which the merge leaves out
+        # the figure is no burnt-out one, which the merge leaves out
+        if np.mean(Z.max(axis=-1) < 250) > 0.5:
             assert inside[moving.hidden[j]].mean() > 0.9
 
 

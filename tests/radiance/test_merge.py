@@ -287,9 +287,8 @@ def test_a_frame_with_one_clipped_channel_is_left_out_for_all_three():
 def test_a_camera_that_clips_before_its_color_matrix_gives_lamps_no_tint():
     matrix = np.array([[1.9, -0.7, -0.2], [-0.3, 1.6, -0.3], [0.0, -0.6, 1.6]])
     lamp = np.geomspace(0.05, 8, 400)[:, None] * np.array([1.0, 0.7, 0.5])
-    exposures = np.clip(
-        np.array([0.25, 1, 4])[:, None, None] * lamp, 0, 1
-    )  # of the camera's filters
+    # of the camera's filters
+    exposures = np.clip(np.array([0.25, 1, 4])[:, None, None] * lamp, 0, 1)
     images = np.round(255 * np.clip(exposures @ matrix.T, 0, 1)).astype(np.uint8)[:, :, None]
     g = np.log(np.maximum(np.arange(256), 0.5) / 255)
     merged = merge_with_quality(images, [0.25, 1, 4], g, method="shot", repair=False)

@@ -160,12 +160,10 @@ def test_level_0_counts_as_measured_if_the_noise_exceeds_the_quantization_step(R
 
 
 def test_a_full_well_just_below_the_top_level_is_not_measured():
-    maker = camera.Camera(
-        response="linear", bits=16, full_well=2_500, read_noise=20
-    )  # 0.8 % of the well
-    taken = camera.shoot(
-        np.full((200, 300), 1.5), [0.2, 1.0, 4.0], maker, rng=3
-    )  # the longer two are full
+    # 0.8 % of the well
+    maker = camera.Camera(response="linear", bits=16, full_well=2_500, read_noise=20)
+    # the longer two are full
+    taken = camera.shoot(np.full((200, 300), 1.5), [0.2, 1.0, 4.0], maker, rng=3)
     assert (taken.images[1:] < 0.98 * 65535).any()
     g = responses.true_g("linear", 65536)
     merged = merge_with_deviation(taken.images, taken.times, g, 2_500 / np.exp(g[-1]), 20)

@@ -82,9 +82,8 @@ def test_lE_is_where_the_samples_lie_on_the_curve(name, solve):
 def test_levels_beyond_the_cut_repeat_the_last_constrained_value():
     Z, B = samples()
     g = debevec.gsolve(Z, B, 30, CUT).g
-    reached = (
-        np.flatnonzero(CUT)[-1] + 1
-    )  # the last smoothness row reaches one level beyond the cut
+    # the last smoothness row reaches one level beyond the cut
+    reached = np.flatnonzero(CUT)[-1] + 1
     assert np.all(g[reached:] == g[reached]) and g[reached] > g[reached - 1]
 
 

@@ -147,9 +147,8 @@ def test_components_fitted_to_201_curves_have_residuals_like_the_published_ones(
 
 
 def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, curves):
-    errors = papers.five_samples(
-        curves[::4], near=0.01
-    )  # 51 of the 201, each by a prior of the other 50
+    # 51 of the 201, each by a prior of the other 50
+    errors = papers.five_samples(curves[::4], near=0.01)
     assert errors.mean() < 0.01
 
 

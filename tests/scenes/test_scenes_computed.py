@@ -203,9 +203,8 @@ def test_the_light_of_a_globe_falls_with_the_square_of_its_distance():
     near = illumination.from_globe(P, interior.FLOOR, textures.rgb(0, 1, 0), 0.1)[0]
     far = illumination.from_globe(P, interior.FLOOR, textures.rgb(0, 2, 0), 0.1)[0]
     assert np.isclose(near, 0.01) and np.isclose(far, 0.0025)
-    assert (
-        illumination.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
-    )  # it is behind that surface
+    # it is behind that surface
+    assert illumination.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
 
 
 def test_a_line_of_sight_leaves_a_box_where_it_should():

@@ -442,9 +442,8 @@ def test_light_from_a_projector_falls_through_its_pane_onto_the_floor():
     z = render.depth(render.mitsuba("scalar_rgb"), place, render.Frame(48, 72))
     slant = 5 / np.hypot(5, 2)  # cosine of the floor's normal against the camera's axis
     pixel = 2 * np.tan(np.radians(30)) / 72
-    assert np.isclose(
-        (z[pixels] ** 2 * pixel**2).sum(), slant, rtol=0.15
-    )  # a pane of one square metre
+    # a pane of one square metre
+    assert np.isclose((z[pixels] ** 2 * pixel**2).sum(), slant, rtol=0.15)
 
 
 def test_without_mitsuba_the_command_says_what_to_install(tmp_path):

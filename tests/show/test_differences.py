@@ -43,9 +43,8 @@ def test_values_over_many_decades_have_a_logarithmic_scale():
     light = np.geomspace(1e-3, 1e3, 48).reshape(6, 8)
     shown = differences.image(light, light * 1.1)
     assert "logarithmic" in shown.alts[0]
-    assert (
-        np.std(web.decode_picture(shown.frames[0])[..., 0].mean(axis=1)) > 20
-    )  # else all but the last row is black
+    # else all but the last row is black
+    assert np.std(web.decode_picture(shown.frames[0])[..., 0].mean(axis=1)) > 20
 
 
 def test_worst_channel_of_a_color_image_counts():

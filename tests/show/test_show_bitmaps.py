@@ -13,9 +13,8 @@ from hdrlab.show.plots.lectures import bitmaps as drawn
 RNG = np.random.default_rng(0)
 COARSE = RNG.integers(0, 256, (14, 18)).astype(np.uint8)
 WALL = np.kron(COARSE, np.ones((8, 8), np.uint8))  # (112, 144)
-PAIR = np.stack(
-    [WALL[8:104, 8:136], WALL[5:101, 12:140]]
-)  # which lies on the first moved by (-3, 4)
+# which lies on the first moved by (-3, 4)
+PAIR = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])
 STATES = list(mtb.align_steps(PAIR))
 
 

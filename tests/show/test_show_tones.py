@@ -105,9 +105,8 @@ def test_bands_draws_a_global_curve_narrow_and_a_local_operator_wide():
     pairs = zip(ax.lines[::2], ax.lines[1::2], strict=True)
     widths = [np.median(high.get_ydata() - low.get_ydata()) for low, high in pairs]
     assert 0 < widths[0] < 5 < 20 < widths[1]
-    assert ax.lines[0].get_xdata()[-1] == pytest.approx(
-        5, abs=0.2
-    )  # 10 stops in all, the median at 0
+    # 10 stops in all, the median at 0
+    assert ax.lines[0].get_xdata()[-1] == pytest.approx(5, abs=0.2)
 
 
 def test_bands_are_in_srgb_encoded_display_values():

@@ -33,9 +33,8 @@ from hdrlab import scenes
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.io.radiance import read_radiance, write_radiance
 
-WHITE = np.float32(
-    [0.9505, 1, 1.089]
-)  # XYZ of a gray of luminance 1, so that pfstools sees no colour
+# XYZ of a gray of luminance 1, so that pfstools sees no colour
+WHITE = np.float32([0.9505, 1, 1.089])
 
 
 class Likeness(NamedTuple):

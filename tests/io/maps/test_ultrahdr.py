@@ -83,9 +83,8 @@ def test_libultrahdr_restores_the_radiance_of_any_operators_picture(operator, pl
     L = colour.luminance(hdr)[kept]
     restored = colour.luminance(seen_by_libultrahdr(path))[kept]
     assert np.percentile(restored, PERCENT) == pytest.approx(np.percentile(L, PERCENT), rel=0.03)
-    low, middle, high = np.percentile(
-        restored / L, PERCENT
-    )  # it does not round to levels, few in the dark
+    # it does not round to levels, few in the dark
+    low, middle, high = np.percentile(restored / L, PERCENT)
     assert low > 0.93 and high < 1.08 and middle == pytest.approx(1, abs=0.005)
     low, middle, high = np.percentile(colour.luminance(ultrahdr.read(path))[kept] / L, PERCENT)
     assert low > 0.97 and high < 1.03 and middle == pytest.approx(1, abs=0.005)
