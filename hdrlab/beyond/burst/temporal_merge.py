@@ -15,8 +15,8 @@ motion or misalignment, where the reference is used alone.
 The factor of n^2 comes from the sum over the pixels of a tile, and the factor of 2 from the two
 frames. The implementation of Monod, Delon and Veit (IPOL 2021) also divides by 4^2, and has c = 8.
 Here c = 1 means the noise itself. With the default of 12, a still scene keeps at most 1.1 times the noise
-of the mean of 8 frames, and a moving figure has no larger error than in the reference frame alone:
-see tests/beyond/test_burst.py.
+of the mean of 8 frames, and a moving figure has about the error of the reference frame alone, or less, if
+the camera moves by whole pixels: see tests/beyond/test_burst.py and notebook 27.
 
 The paper also denoises the merged tiles by a second filter, in space. It is not part of this module.
 """
