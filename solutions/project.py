@@ -34,7 +34,7 @@ use_plan("project")
 # ## 1 · The operator ({points})
 #
 # Write the photographic operator of Reinhard and his colleagues as one function. Homework 4 has its
-# parts: the log average, the scaling to the key $a$, and
+# parts: the log average, the scaling to the key $a$, and the curve. Use them in this form:
 #
 # $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + V}, \qquad L_m = \frac{a L}{\bar L}.$$
 #

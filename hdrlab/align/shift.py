@@ -48,7 +48,7 @@ def shift(images: ArrayLike, offsets: ArrayLike) -> Array:
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
     offsets : (P, 2) int, pixels
-        (dy, dx), down and right, as `mtb.align` returns them.
+        (dy, dx), down and right: where each image must move.
 
     Returns
     -------

@@ -170,6 +170,9 @@ def read(path: str | Path | None = None) -> Plan:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
+    is_varied = sheets.pop("vary_all_tasks", False)
+    if not isinstance(is_varied, bool):
+        raise InputError(f"{path}: expected vary_all_tasks = true or false, got {is_varied!s:.80}")
     team_size = sheets.pop("team_size", TEAM_SIZE)
     if not isinstance(team_size, int) or team_size < 1:
         raise InputError(
@@ -186,7 +189,7 @@ def read(path: str | Path | None = None) -> Plan:
             )
     homeworks = {}
     for name, sheet in sheets.items():
-        homework = _homework(name, sheet, path)
+        homework = _homework(name, sheet, path, is_varied)
         due = due_dates.date_in_term(homework.due, first_day, holidays)
         homeworks[name] = homework._replace(due=due)
     plan = Plan(homeworks, late, team_size, first_day, tuple(holidays))
@@ -210,7 +213,7 @@ def _late(table: dict[str, Any], path: Path) -> Late:
     )
 
 
-def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
+def _homework(name: str, sheet: dict[str, Any], path: Path, is_varied: bool) -> Homework:
     """Return a homework from its table in a plan; raise an InputError if something is wrong with it."""
     here = f"[{name:.80}]"
     try:
@@ -218,7 +221,7 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
             name=name,
             title=sheet["title"],
             due=due_dates.read(sheet["due"]),
-            tasks=tuple(_task(table, path) for table in sheet["tasks"]),
+            tasks=tuple(_task(table, path, is_varied) for table in sheet["tasks"]),
             by_hand=tuple(_manual_task(table) for table in sheet.get("by_hand", ())),
             at_most=float(sheet["at_most"]) if "at_most" in sheet else None,
         )
@@ -249,12 +252,12 @@ def _manual_task(table: dict[str, Any]) -> ManualTask:
     return ManualTask(title=table["title"], points=float(table["points"]), rubric=rubric)
 
 
-def _task(table: dict[str, Any], plan: Path) -> Task:
-    """Return a task from its table in a plan."""
+def _task(table: dict[str, Any], plan: Path, is_varied: bool) -> Task:
+    """Return a task from its table in a plan; `is_varied` gives it all its parameters by default."""
     id = table["id"]
     function = _with_folder(table["function"], plan)
-    parameters = tuple(table.get("parameters", ()))
     known = {} if ":" in function else rewording.parameters(id)
+    parameters = tuple(table.get("parameters", known if is_varied else ()))
     if not set(parameters) <= set(known):
         raise InputError(
             f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}"

@@ -64,7 +64,7 @@ def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
         assert task.parameters == tuple(some)
     with pytest.raises(ValueError, match=rf"parameters of shift out of {', '.join(names)}"):
         read(tasks=f"{{ {shift}, parameters = ['other'] }}")
-    with pytest.raises(ValueError, match="parameters of gsolve out of none"):
+    with pytest.raises(ValueError, match="parameters of gsolve out of exposures, lambda, weights"):
         read(tasks=f"{{ {TASK}, points = 1, parameters = ['other'] }}")
 
 

@@ -50,8 +50,8 @@ def test_an_assignment_must_contain_every_text_that_a_variant_changes(known):
 
 def test_every_variant_has_a_name_and_the_librarys_comes_first():
     tasks = {file.stem for file in rewording.FOLDER.glob("*.toml")}
-    assert {"shift", "exclusion"} <= tasks and rewording.parameters("gsolve") == {}
-    assert rewording.every("gsolve") == ("",)
+    assert {"shift", "exclusion"} <= tasks and rewording.parameters("hat") == {}
+    assert rewording.every("hat") == ("",)
     for task in tasks:
         every = rewording.every(task)
         values = rewording.parameters(task).values()

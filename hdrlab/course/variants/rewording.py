@@ -33,7 +33,7 @@ def every(task: str) -> tuple[str, ...]:
 
     Examples
     --------
-    >>> len(every("shift")), every("shift")[0], every("gsolve")
+    >>> len(every("shift")), every("shift")[0], every("hat")
     (8, 'cut/goes/rows', ('',))
     """
     return tuple(map("/".join, product(*parameters(task).values())))

@@ -38,12 +38,12 @@ def absolute_differences(X, start, *, reach=1.0):
     p = light.lattice(shape)
     column, row = p.astype(int).T
 
-    def error(motion):
+    def mean_square_difference(motion):
         q = warp.apply(np.linalg.inv(rigid(shape, motion)), p)
         b = scipy.ndimage.map_coordinates(X[1].astype(float), q.T[::-1], order=1, cval=np.nan)
         return light.error(X[0][row, column] - b)
 
-    return search(error, start)
+    return search(mean_square_difference, start)
 
 
 @mistake(

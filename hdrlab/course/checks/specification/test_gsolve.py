@@ -21,16 +21,35 @@ def samples(rng, N=50, P=5, *, response=None, noise=1.0, light=(-3, 3)):
     return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
 
 
-def get_answer(subject, Z, B, smoothness, w):
-    """Return g and lE of a subject, shifted to g[n // 2] = 0, because a constant in both is
-    free.
-    """
-    g, lE = parts(subject.gsolve(Z, B, smoothness, w), 2, what="g and lE")
-    g = finite(g, (len(w),), what="g")
-    lE = finite(lE, (len(Z),), what="lE")
+def as_on_the_sheet(B, smoothness, w):
+    """Return ln t, lambda and w as the sheet passes them. Variants of the task change this."""
+    exposures = B
+    strength = smoothness
+    table = w
+    return exposures, strength, table
+
+
+def from_the_sheet(exposures, strength, table):
+    """Return ln t, lambda and w of arguments that `as_on_the_sheet` returns."""
+    B = exposures
+    smoothness = strength
+    w = table
+    return B, smoothness, w
+
+
+def asked(subject, Z, B, smoothness, w):
+    """Return g and lE of a subject for the ln times B, as `in_gauge` shifts them."""
+    return in_gauge(subject.gsolve(Z, *as_on_the_sheet(B, smoothness, w)), len(w), len(Z))
+
+
+def in_gauge(answer, n, N):
+    """Return g (n,) and lE (N,), shifted to g[n // 2] = 0, because a constant in both is free."""
+    g, lE = parts(answer, 2, what="g and lE")
+    g = finite(g, (n,), what="g")
+    lE = finite(lE, (N,), what="lE")
     g = g.astype(float)
     lE = lE.astype(float)
-    return g - g[len(w) // 2], lE - g[len(w) // 2]
+    return g - g[n // 2], lE - g[n // 2]
 
 
 # in both, the curve bends, and there are more equations than unknowns, so that every weight counts
@@ -40,11 +59,12 @@ SMALL_INPUTS = [
 ]
 
 
-def check_one_input(subject, Z, B, smoothness, w):
+def check_one_input(subject, Z, exposures, strength, table):
     """Compare g and lE with those of the solution."""
-    g, lE = get_answer(subject, Z, B, smoothness, w)
-    truth = debevec.gsolve(Z, B, smoothness, w)
-    gauge = truth.g[len(w) // 2]
+    n = len(table)
+    g, lE = in_gauge(subject.gsolve(Z, exposures, strength, table), n, len(Z))
+    truth = debevec.gsolve(Z, *from_the_sheet(exposures, strength, table))
+    gauge = truth.g[n // 2]
     same(g, truth.g - gauge, 0.02, what="g")
     same(lE, truth.lE - gauge, 0.02, what="lE")
 
@@ -57,7 +77,7 @@ def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
     Split the solution x at n: g = x[:n] and lE = x[n:].
     """
     Z, B = samples(rng, N=40)
-    get_answer(subject, Z, B, 30.0, HAT)
+    asked(subject, Z, B, 30.0, HAT)
 
 
 @points(4)
@@ -70,9 +90,10 @@ def test_the_curve_of_a_camera_is_recovered(subject, rng):
     Plot g: it must rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
-    # some of them clipped
-    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, 0.3))
-    g, _ = get_answer(subject, Z, B, 10.0, HAT)
+    Z, B = samples(
+        rng, N=200, response=response, noise=0, light=(-2.4, 0.3)
+    )  # some of them clipped
+    g, _ = asked(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
 
@@ -87,7 +108,7 @@ def test_g_and_lE_minimize_the_sum_of_squares(subject, rng):
     Count your rows: N P for the data, one for the gauge, n - 2 for smoothness.
     """
     Z, B = samples(rng)
-    g, lE = get_answer(subject, Z, B, 30.0, HAT)
+    g, lE = asked(subject, Z, B, 30.0, HAT)
     truth = debevec.gsolve(Z, B, 30.0, HAT)
     same(g, truth.g, 0.02, what="g")
     same(lE, truth.lE, 0.02, what="lE")
@@ -105,17 +126,17 @@ def test_more_smoothness_gives_a_straighter_curve_and_a_worse_fit(subject, rng):
     bends = []
     misses = []
     for smoothness in (1.0, 10.0, 100.0, 1000.0):
-        g, lE = get_answer(subject, Z, B, smoothness, HAT)
+        g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    message = f"sum (w g'')^2: expected it to decrease as lambda grows, got {_few(bends)}"
-    require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], message)
-    message = f"sum (w (g - lE - B))^2: expected it to increase as lambda grows, got {_few(misses)}"
-    require(np.all(np.diff(misses) > 0), message)
+    said = f"sum (w g'')^2: expected it to decrease as lambda grows, got {_few(bends)}"
+    require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], said)
+    said = f"sum (w (g - lE - B))^2: expected it to increase as lambda grows, got {_few(misses)}"
+    require(np.all(np.diff(misses) > 0), said)
 
 
 def _few(numbers):
-    return ", ".join(f"{number:.3g}" for number in numbers)
+    return ", ".join(f"{one:.3g}" for one in numbers)
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")
@@ -128,10 +149,8 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """
     Z, B = samples(rng, N=40)
     order = rng.permutation(len(B))
-    g, _ = get_answer(subject, Z[:, order], B[order], 30.0, HAT)
-    same(
-        g, get_answer(subject, Z, B, 30.0, HAT)[0], 0.02, what="g with the frames in another order"
-    )
+    g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
+    same(g, asked(subject, Z, B, 30.0, HAT)[0], 0.02, what="g with the frames in another order")
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")
@@ -143,10 +162,9 @@ def test_another_unit_of_time_changes_lE_but_not_g(subject, rng):
     The right-hand side is w B[j]. Use B as it is, not its logarithm or its exponential.
     """
     Z, B = samples(rng, N=40)
-    g, lE = get_answer(subject, Z, B, 30.0, HAT)
-    g_ms, lE_ms = get_answer(subject, Z, B + np.log(1000.0), 30.0, HAT)
-    same(g_ms, g, 0.02, what="g with times in milliseconds")
-    same(lE_ms, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
+    (g, lE), (moved, less) = (asked(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0)))
+    same(moved, g, 0.02, what="g with times in milliseconds")
+    same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
 
 @points(2, needs="test_the_curve_of_a_camera_is_recovered")
@@ -158,8 +176,8 @@ def test_any_number_of_levels_works(subject, rng):
     The unknowns are g (n,) followed by lE (N,): n + N columns.
     """
     Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
-    g, _ = get_answer(subject, Z, B, 10.0, HAT)
-    few, _ = get_answer(subject, Z // 16, B, 1.0, weights.hat(16))
+    g, _ = asked(subject, Z, B, 10.0, HAT)
+    few, _ = asked(subject, Z // 16, B, 1.0, weights.hat(16))
     fine = g[8::16] - g[136]  # g in the middle of each of the 16 levels
     same(
         few[4:12],

@@ -10,7 +10,7 @@ from hdrlab.course.checks.compare import finite, points, same
 SHAPE = (36, 48)
 
 
-def draw_inputs(rng):
+def drawn(rng):
     """Return a guide of two walls with texture, another image of the same walls, and the
     parameters.
     """
@@ -26,6 +26,16 @@ def inside(radius):
     return mask
 
 
+def asked(subject, *images, radius, epsilon):
+    """Return the answer of a subject for the variance `epsilon`, passed as on the sheet."""
+    return subject.guided(*images, radius=radius, epsilon=epsilon)
+
+
+def solution(*images, **knobs):
+    """Return the right answer, of a guide and of the image to filter, if it is another one."""
+    return guided(*images, **knobs)
+
+
 # near a border, where all pixels of a small image are, right filters differ
 check_one_input = None
 
@@ -38,10 +48,10 @@ def test_an_image_is_smoothed_along_its_guide(subject, rng):
 
     All means are over (2 r + 1) x (2 r + 1) pixels, and cov(I, p) = mean(I p) - mean(I) mean(p).
     """
-    guide, p, options = draw_inputs(rng)
-    expected = guided(guide, p, **options)
-    where = inside(options["radius"])
-    same(subject.guided(guide, p, **options), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, knobs = drawn(rng)
+    expected = solution(guide, p, **knobs)
+    where = inside(knobs["radius"])
+    same(asked(subject, guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(4)
@@ -53,10 +63,10 @@ def test_an_image_that_guides_itself_keeps_its_edges(subject, rng):
 
     cov(I, I) is the variance of I.
     """
-    guide, _, options = draw_inputs(rng)
-    expected = guided(guide, **options)
-    where = inside(options["radius"])
-    same(subject.guided(guide, **options), expected, 1e-3, what="q", picture=True, where=where)
+    guide, _, knobs = drawn(rng)
+    expected = solution(guide, **knobs)
+    where = inside(knobs["radius"])
+    same(asked(subject, guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(1, needs="test_an_image_is_smoothed_along_its_guide")
@@ -67,11 +77,11 @@ def test_a_large_epsilon_leaves_the_mean_of_means(subject, rng):
 
     Average b, too: the result is a mean of means.
     """
-    guide, p, options = draw_inputs(rng)
-    options["epsilon"] = 1e6
-    expected = guided(guide, p, **options)
-    where = inside(options["radius"])
-    same(subject.guided(guide, p, **options), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, knobs = drawn(rng)
+    knobs["epsilon"] = 1e6
+    expected = solution(guide, p, **knobs)
+    where = inside(knobs["radius"])
+    same(asked(subject, guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(2)
@@ -82,8 +92,6 @@ def test_scaling_and_shifting_p_scales_and_shifts_q(subject, rng):
 
     A constant added to p goes into b. A factor of p goes into a and b.
     """
-    guide, p, options = draw_inputs(rng)
-    q, again = (
-        finite(subject.guided(guide, x, **options), SHAPE, what="q") for x in (p, 2 * p + 3)
-    )
-    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(options["radius"]))
+    guide, p, knobs = drawn(rng)
+    q, again = (finite(asked(subject, guide, x, **knobs), SHAPE, what="q") for x in (p, 2 * p + 3))
+    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(knobs["radius"]))

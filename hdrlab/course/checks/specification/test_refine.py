@@ -77,8 +77,15 @@ def draw_start(rng):
     return rng.uniform(0.1, 0.4, 3) * rng.choice([-1, 1], 3)
 
 
+def on_the_sheet(motion):
+    """Return a motion (dy, dx, r phi) in the order and with the signs of the sheet."""
+    order = [0, 1, 2]
+    signs = [1, 1, 1]
+    return np.asarray(motion, float)[order] * signs
+
+
 def same_motion(subject, X, start, motion, what="(dy, dx, r phi)"):
-    same(subject.refine(X, start), motion, TOLERANCE, what=what)
+    same(subject.refine(X, on_the_sheet(start)), on_the_sheet(motion), TOLERANCE, what=what)
 
 
 # a few pixels do not determine a motion
