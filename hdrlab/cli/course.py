@@ -251,7 +251,13 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
     "--out",
     type=common.OUTPUT_PATH,
     default="questions.xml",
-    help="Moodle XML (.xml), or a page to print, with the answers at its end (.html).",
+    help="Moodle XML (.xml), a package of QTI 2.1 (.zip), or a page to print, with the answers at "
+    "its end (.html).",
+)
+@click.option(
+    "--tasks",
+    is_flag=True,
+    help="Write questions about the tasks instead: values, mistakes, checks and images.",
 )
 @click.option(
     "--inventory",
@@ -259,7 +265,9 @@ def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
     help="Write the concept inventory instead: thirty questions to ask before and after the course.",
 )
 @jobs_option
-def questions(*, notebooks: tuple[str, ...], out: Path, inventory: bool, jobs: int) -> None:
+def questions(
+    *, notebooks: tuple[str, ...], out: Path, tasks: bool, inventory: bool, jobs: int
+) -> None:
     """Write a question bank from the predictions of the notebooks.
 
     NOTEBOOK is the name or the number of a notebook of hdrlab, such as 04, or the path of a
@@ -267,10 +275,11 @@ def questions(*, notebooks: tuple[str, ...], out: Path, inventory: bool, jobs: i
 
     The bank contains each question with a choice or a number as its answer. hdrlab runs the
     notebooks, which compute the right answers. Import the file into the question bank of a Moodle
-    course as Moodle XML.
+    course as Moodle XML, or into another platform as QTI 2.1.
 
-    With --inventory, hdrlab runs no notebook. `hdrlab course gain` compares the answers that
-    students gave before and after the course.
+    With --tasks or --inventory, hdrlab runs no notebook. The questions of --tasks have the kinds of
+    `hdrlab viva`, without a student's code. `hdrlab course gain` compares the answers to the
+    inventory that students gave before and after the course.
 
     hdrlab keeps the executed notebooks in .NAME.cache next to the file. The next run executes only
     notebooks that have changed.
@@ -285,12 +294,14 @@ def questions(*, notebooks: tuple[str, ...], out: Path, inventory: bool, jobs: i
     from hdrlab.io import files
 
     bank.require_format(out)
-    if inventory:
-        if notebooks:
-            raise InputError("--inventory uses no notebooks; leave out their names")
-        lesson = bank.inventory_lesson()
-        bank.write([lesson], out)
-        click.echo(f"{out}: {len(lesson.questions)} questions")
+    if inventory or tasks:
+        if notebooks or inventory == tasks:
+            raise InputError(
+                "--inventory and --tasks use no notebooks; pass one of them, without names"
+            )
+        lessons = [bank.inventory_lesson()] if inventory else bank.task_lessons()
+        bank.write(lessons, out)
+        click.echo(f"{out}: {sum(len(lesson.questions) for lesson in lessons)} questions")
         return
     chosen = decks.find_notebooks(notebooks)
     files.require_other([out], chosen)

@@ -6,7 +6,7 @@ from pathlib import Path
 import nbformat
 
 from hdrlab.course.authoring import execute
-from hdrlab.course.question_bank import moodle, paper
+from hdrlab.course.question_bank import moodle, paper, qti, task_questions
 from hdrlab.course.question_bank.inventory import all_questions
 from hdrlab.course.question_bank.inventory.question import ConceptQuestion
 from hdrlab.course.question_bank.questions import (
@@ -18,7 +18,7 @@ from hdrlab.course.site import pages
 from hdrlab.errors import InputError
 from hdrlab.io import files
 
-WRITERS = {".xml": moodle.to_moodle, ".html": paper.to_page}
+WRITERS = {".xml": moodle.to_moodle, ".zip": qti.to_package, ".html": paper.to_page}
 INVENTORY_TITLE = "Concept inventory"
 INVENTORY_INSTRUCTIONS = (
     "Choose one answer to each question. You may use a calculator, but no notes, books or other "
@@ -32,8 +32,8 @@ def require_format(out: Path) -> None:
     """Raise an InputError if the suffix of a file names no format of a question bank."""
     if out.suffix.lower() not in WRITERS:
         raise InputError(
-            f"{out}: a question bank is Moodle XML (.xml) or a page to print (.html); "
-            "pass -o with one of these suffixes"
+            f"{out}: a question bank is Moodle XML (.xml), a package of QTI 2.1 (.zip) or a page to "
+            "print (.html); pass -o with one of these suffixes"
         )
 
 
@@ -54,6 +54,11 @@ def inventory_lesson() -> LessonQuestions:
     return LessonQuestions(
         INVENTORY_TITLE, questions, instructions=INVENTORY_INSTRUCTIONS, is_asked_again=True
     )
+
+
+def task_lessons() -> list[LessonQuestions]:
+    """Return the questions about the tasks of the course, which need no student's code."""
+    return list(task_questions.lessons())
 
 
 def _to_choices(question: ConceptQuestion) -> ChoiceQuestion:

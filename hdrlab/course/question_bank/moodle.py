@@ -8,15 +8,14 @@ import base64
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from html import escape
-from typing import Any
 
+from hdrlab.course.question_bank.markdown_html import to_html
 from hdrlab.course.question_bank.questions import (
     ChoiceQuestion,
     LessonQuestions,
     NumberQuestion,
     Question,
 )
-from hdrlab.course.slides.markdown import parser
 
 BANK = "$course$/top/hdrlab"  # the category of all questions
 # percent of the points
@@ -51,7 +50,7 @@ def _add_question(quiz: ET.Element, question: Question, name: str, *, is_asked_a
     asked = f"<p><b>{escape(question.text)}</b></p>"
     if isinstance(question, NumberQuestion):
         asked += f"<p>{escape(question.instruction)}</p>"
-    _add_html(element, "questiontext", _to_html(question.context) + asked)
+    _add_html(element, "questiontext", to_html(question.context) + asked)
     explanation = "" if is_asked_again else f"<p>{escape(question.because)}</p>"
     _add_html(element, "generalfeedback", explanation)
     ET.SubElement(element, "defaultgrade").text = "1"
@@ -95,21 +94,3 @@ def _add_text(element: ET.Element, name: str, text: str) -> ET.Element:
 
 def _add_html(element: ET.Element, name: str, html: str) -> None:
     _add_text(element, name, html).set("format", "html")
-
-
-def _to_html(markdown: str) -> str:
-    """Return Markdown as HTML, with formulas as TeX."""
-    converter = parser()
-    converter.add_render_rule("math_inline", _inline_tex)
-    converter.add_render_rule("math_block", _displayed_tex)
-    return str(converter.render(markdown))
-
-
-def _inline_tex(self: object, tokens: list[Any], index: int, options: object, env: object) -> str:
-    return rf"\({escape(tokens[index].content)}\)"
-
-
-def _displayed_tex(
-    self: object, tokens: list[Any], index: int, options: object, env: object
-) -> str:
-    return rf"<p>\[{escape(tokens[index].content)}\]</p>"

@@ -5,7 +5,6 @@ import numpy as np
 from hdrlab.course.checks.compare import finite, parts, points, require, same, states
 from hdrlab.tonemap import ward
 
-
 # the largest slope of ln Ld over ln L
 STEEPEST = 1
 
