@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LESSONS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 ANSWERS = ROOT / "solutions" / "exercises"
 HEADING = "Answers to the exercises of notebook"  # the first line of each file with answers
+MODEL_ANSWER = "**Model answer.**"  # in the notebook of written questions
 MAX_LINE_LENGTH = 100
 
 pytestmark = pytest.mark.skipif(
@@ -36,9 +37,10 @@ def texts(path):
 
 
 def files_with_answers(folder):
-    """Return the files below a folder that contain the first line of a file with answers."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    return [path for path in files if HEADING.encode() in path.read_bytes()]
+    """Return the files below a folder that contain answers to exercises or to written questions."""
+    contents = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    marks = (HEADING.encode(), MODEL_ANSWER.encode())
+    return [path for path, content in contents.items() if any(mark in content for mark in marks)]
 
 
 @each_lesson

@@ -222,25 +222,37 @@ def new_task(*, task: str, out: Path, homework: str) -> None:
     default="solutions/exercises",
     help="Folder with the answers to the exercises, in a clone of hdrlab.",
 )
+@click.option(
+    "--written",
+    type=common.INPUT_PATH,
+    default="solutions/written_questions.ipynb",
+    help="Notebook of the written questions, in a clone of hdrlab.",
+)
 @assignments.plan_option
-def pack(*, folder: Path, exercises: Path, plan: Path | None) -> None:
+def pack(*, folder: Path, exercises: Path, written: Path, plan: Path | None) -> None:
     """Write model solutions to FOLDER, for instructors.
 
-    hdrlab solves each homework with the library's functions, and copies the answers to the
-    exercises of the notebooks. The installed package does not contain these answers. Run the
-    command in a clone of hdrlab, or pass --exercises.
+    hdrlab solves each homework with the library's functions. It copies the answers to the exercises
+    of the notebooks, and the written questions with their model answers and marking schemes; it
+    writes a sheet of these questions for students. The installed package does not contain these
+    answers. Run the command in a clone of hdrlab, or pass --exercises and --written.
     """
     from hdrlab.course import plan as plans
     from hdrlab.course.authoring import solutions
 
     answers = sorted(exercises.glob("*.ipynb"))
-    common.echo_paths(solutions.write(plans.read(plan), folder, answers))
+    questions = written if written.is_file() else None
+    common.echo_paths(solutions.write(plans.read(plan), folder, answers, questions))
     if not answers:
         common.echo_notes(
             [
                 f"{exercises} has no answers to the exercises; run the command in a clone of "
                 "hdrlab, or pass --exercises FOLDER"
             ]
+        )
+    if questions is None:
+        common.echo_notes(
+            [f"no written questions in {written}; run the command in a clone, or pass --written"]
         )
 
 

@@ -20,6 +20,13 @@ from hdrlab.errors import InputError
 FENCE = "\n\n\n# %%\n"
 HEAD = Path(__file__).with_name("solutions_head.md")  # of the table of what is in the pack
 EXERCISES_FOLDER = "exercises"
+WRITTEN_SHEET = "written_questions.md"
+WRITTEN_NOTE = f"""
+The notebook of written questions has model answers, marking schemes and simulations.
+`{WRITTEN_SHEET}` is the sheet for students: the questions alone, and the only file here to hand out.
+"""
+# of a cell that students do not get
+INSTRUCTOR_TAG = "instructor"
 EXERCISES_NOTE = f"""
 The folder `{EXERCISES_FOLDER}` has the answers to the exercises at the end of each notebook.
 """
@@ -59,7 +66,20 @@ def script(cells: Mapping[str, str]) -> str:
     return "# %%\n" + FENCE.join(cells.values()) + "\n"
 
 
-def write(plan: Plan, folder: Path, answers: Iterable[Path] = ()) -> Iterator[Path]:
+def written_sheet(questions: str) -> str:
+    """Return the sheet for students, in Markdown, of a notebook with questions and model answers."""
+    cells = json.loads(questions)["cells"]
+    shown = [
+        "".join(cell["source"])
+        for cell in cells
+        if INSTRUCTOR_TAG not in cell["metadata"].get("tags", ())
+    ]
+    return "\n\n".join(shown) + "\n"
+
+
+def write(
+    plan: Plan, folder: Path, answers: Iterable[Path] = (), written: Path | None = None
+) -> Iterator[Path]:
     """Write the pack into a folder, which is made where it is missing, and yield each file.
 
     Parameters
@@ -67,6 +87,7 @@ def write(plan: Plan, folder: Path, answers: Iterable[Path] = ()) -> Iterator[Pa
     plan : the homeworks
     folder : where the pack goes
     answers : notebooks with answers to the exercises of the lessons, copied as they are
+    written : the notebook of written questions, copied as it is; students get its sheet
     """
     table = HEAD.read_text("utf8")
     for name, homework in plan.homeworks.items():
@@ -84,6 +105,11 @@ def write(plan: Plan, folder: Path, answers: Iterable[Path] = ()) -> Iterator[Pa
     yield from copies
     if copies:
         table += EXERCISES_NOTE
+    if written is not None:
+        questions = written.read_text(encoding="utf8")
+        yield handouts.write_text(folder / written.name, questions)
+        yield handouts.write_text(folder / WRITTEN_SHEET, written_sheet(questions))
+        table += WRITTEN_NOTE
     yield handouts.write_text(folder / "README.md", table)
 
 
