@@ -41,6 +41,11 @@ def encode_webp(image: Image, *, quality: int = 85, lossless: bool = False) -> b
     return _encode(image, format="WEBP", lossless=False, method=WEBP_LOSSY_METHOD, quality=quality)
 
 
+def encode_png(image: Image) -> bytes:
+    """Return `image` as PNG, which programs that do not know WebP can read, too."""
+    return _encode(image, format="PNG", optimize=True)
+
+
 def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:
     """Return `image` as JPEG, the quickest to encode.
 

@@ -16,8 +16,6 @@ from collections.abc import Sequence
 from html import escape
 from io import BytesIO
 
-from PIL import Image as PillowImage
-
 from hdrlab.course.question_bank.markdown_html import to_html
 from hdrlab.course.question_bank.questions import (
     ChoiceQuestion,
@@ -26,6 +24,7 @@ from hdrlab.course.question_bank.questions import (
     Question,
 )
 from hdrlab.errors import InputError
+from hdrlab.io import web
 
 QTI = "http://www.imsglobal.org/xsd/imsqti_v2p1"
 PACKAGING = "http://www.imsglobal.org/xsd/imscp_v1p1"
@@ -88,9 +87,8 @@ def to_images(question: Question, item_id: str) -> dict[str, bytes]:
         return {}
     images = {}
     for index, image in enumerate(question.images, 1):
-        file = BytesIO()
-        PillowImage.open(BytesIO(image.content)).save(file, "PNG", optimize=True)
-        images[f"images/{item_id}-{index}.png"] = file.getvalue()
+        pixels = web.decode_picture(image.content)
+        images[f"images/{item_id}-{index}.png"] = web.encode_png(pixels)
     return images
 
 
