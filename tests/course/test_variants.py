@@ -85,6 +85,7 @@ def about(task, variant):
     return {
         "prose": next(text for text in reversed(sheet[:at]) if text.startswith("#")),
         "stub": sheet[at - 1],
+        "class": sheet[at - 2] if sheet[at - 2].startswith(("class ", "from typing")) else "",
         "pictures": "\n".join(text for text in sheet if re.search(rf"(?<!def )\b{task}\(", text)),
         "solution": handout.solution["cells"][at - 1]["source"],
         "checks": checks,

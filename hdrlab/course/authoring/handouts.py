@@ -126,7 +126,8 @@ def _task_cells(task: Task, opening: str, blocks: Mapping[str, inline.Block]) ->
     """Return the cells of a task: classes that it returns, the stub or the solution, and the check."""
     pairs = []
     for dotted in stubs.classes(task.function):
-        class_cell = _code(stubs.bare_class(dotted), given=True)
+        text = rewording.reword(task.id, task.variant, stubs.bare_class(dotted))
+        class_cell = _code(text, given=True)
         pairs.append(CellPair(class_cell, class_cell))
     docstring = "\n".join(line.removeprefix("#").removeprefix(" ") for line in opening.splitlines())
     stub = rewording.reword(task.id, task.variant, stubs.stub(task, docstring.strip()))
