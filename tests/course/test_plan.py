@@ -43,6 +43,21 @@ def test_a_homework_is_worth_the_sum_of_its_tasks_up_to_its_maximum(at_most, poi
     assert Homework("hw", "", None, tasks, (ManualTask("x", 3.0),), at_most).points == points
 
 
+def test_one_line_of_a_plan_varies_all_tasks_that_have_variants(tmp_path):
+    text = plan.PLAN.read_text("utf8")
+    path = tmp_path / "plan.toml"
+    path.write_text(f"vary_all_tasks = true\n{text}", "utf8")
+    tasks = [task for homework in plan.read(path).homeworks.values() for task in homework.tasks]
+    for task in tasks:
+        assert task.parameters == tuple(plan.rewording.parameters(task.id))
+    varied = [task for task in tasks if task.parameters]
+    most = sorted(tasks, key=lambda task: -task.points)[:5]
+    assert len(varied) >= 12 and set(most) <= set(varied)
+    path.write_text(f"vary_all_tasks = 1\n{text}", "utf8")
+    with pytest.raises(ValueError, match="vary_all_tasks"):
+        plan.read(path)
+
+
 def test_a_solution_comes_from_the_library_a_variant_or_the_own_task(tmp_path):
     assert plan.function(Task("gsolve", "response.debevec.gsolve", 1)) is gsolve
     (tmp_path / "v.py").write_text("def vignette():\n    return 7\n", encoding="utf8")

@@ -199,8 +199,10 @@ def test_a_file_without_the_task_has_one_problem_that_names_the_cause(data, prob
 
 
 def test_the_variants_of_a_sheet_are_read_from_its_call_of_use_plan(read):
-    call = 'use_plan("hw2", {"shift": "cut/goes/rows", "hat": "one",\n "exclusion":  "compared/above/six"})'
+    call = 'use_plan("hw2", {"shift": "cut/goes/rows", "hat": "no variant",\n "exclusion":  "compared/above/six"})'
     assert read(call).variants == {"shift": "cut/goes/rows", "exclusion": "compared/above/six"}
+    one = 'use_plan("hw4", variants={"display": "factor"})'
+    assert read(one).variants == {"display": "factor"}
     assert read('x = {"shift": "cut/goes/rows"}').variants is None
     assert read("use_plan()\n# %%\nx = {'a': 1}").variants == {}
 

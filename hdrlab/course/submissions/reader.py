@@ -43,8 +43,8 @@ MAX_SHOWN_PROBLEMS = 12
 MAX_PROBLEM_LENGTH = 300
 MAX_NAME_LENGTH = 80
 MAX_SHOWN_NAMES = 5
-# "exclusion": "compared/above/four", in a sheet's call of use_plan
-VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"')
+# "exclusion": "compared/above/four", or "display": "factor", in a sheet's call of use_plan
+VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)*)"')
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
