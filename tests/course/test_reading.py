@@ -199,7 +199,7 @@ def test_a_file_without_the_task_has_one_problem_that_names_the_cause(data, prob
 
 
 def test_the_variants_of_a_sheet_are_read_from_its_call_of_use_plan(read):
-    call = 'use_plan("hw2", {"shift": "cut/goes/rows", "hat": "no variant",\n "exclusion":  "compared/above/six"})'
+    call = 'use_plan("hw2", {"shift": "cut/goes/rows", "hat": "a b",\n "exclusion":  "compared/above/six"})'
     assert read(call).variants == {"shift": "cut/goes/rows", "exclusion": "compared/above/six"}
     one = 'use_plan("hw4", variants={"display": "factor"})'
     assert read(one).variants == {"display": "factor"}

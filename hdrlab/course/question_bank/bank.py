@@ -1,6 +1,6 @@
 """Collect the questions of notebooks or of the inventory, and write them in a file's format."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import nbformat
@@ -18,7 +18,11 @@ from hdrlab.course.site import pages
 from hdrlab.errors import InputError
 from hdrlab.io import files
 
-WRITERS = {".xml": moodle.to_moodle, ".zip": qti.to_package, ".html": paper.to_page}
+WRITERS: dict[str, Callable[[Sequence[LessonQuestions]], str | bytes]] = {
+    ".xml": moodle.to_moodle,
+    ".zip": qti.to_package,
+    ".html": paper.to_page,
+}
 INVENTORY_TITLE = "Concept inventory"
 INVENTORY_INSTRUCTIONS = (
     "Choose one answer to each question. You may use a calculator, but no notes, books or other "

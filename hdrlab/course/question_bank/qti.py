@@ -58,7 +58,7 @@ def to_package(lessons: Sequence[LessonQuestions]) -> bytes:
                 raise InputError(f"two questions have the name {question.name!r}")
             images = to_images(question, item_id)
             title = f"{lesson.title}, question {number}"
-            item = item_element(question, title, images, is_asked_again=lesson.is_asked_again)
+            item = item_element(question, title, list(images), is_asked_again=lesson.is_asked_again)
             files[file_name] = to_bytes(item)
             in_package = {f"items/{name}": content for name, content in images.items()}
             files |= in_package
@@ -104,15 +104,19 @@ def item_element(
         adaptive="false",
         timeDependent="false",
     )
-    is_choice = isinstance(question, ChoiceQuestion)
+    if isinstance(question, ChoiceQuestion):
+        base_type = "identifier"
+        right = LETTERS[question.right]
+    else:
+        base_type = "float"
+        right = f"{question.truth:.6g}"
     response = ET.SubElement(
         item,
         "responseDeclaration",
         identifier="RESPONSE",
         cardinality="single",
-        baseType="identifier" if is_choice else "float",
+        baseType=base_type,
     )
-    right = LETTERS[question.right] if is_choice else f"{question.truth:.6g}"
     add_value(ET.SubElement(response, "correctResponse"), right)
     score = ET.SubElement(
         item,
@@ -168,9 +172,7 @@ def add_choices(
         ET.SubElement(choice, "p").text = label
         if question.images:
             paragraph = ET.SubElement(choice, "p")
-            ET.SubElement(
-                paragraph, "img", src=list(image_names)[index], alt=question.images[index].alt
-            )
+            ET.SubElement(paragraph, "img", src=image_names[index], alt=question.images[index].alt)
 
 
 def add_number(body: ET.Element, question: NumberQuestion) -> None:

@@ -26,7 +26,7 @@ from hdrlab import scenes
 from hdrlab.core import colour
 from hdrlab.course import plan
 from hdrlab.course.checks import inprocess, misconceptions
-from hdrlab.course.checks.misconceptions import KnownMistake
+from hdrlab.course.checks.mistakes import KnownMistake, mistakes_of
 from hdrlab.course.question_bank.questions import ChoiceQuestion, Image, LessonQuestions
 from hdrlab.io import web
 
@@ -251,8 +251,8 @@ def solution(task: str) -> Callable[..., Any]:
 def distinct_mistakes(call: SmallCall) -> list[KnownMistake]:
     """Return known mistakes whose answers to a call differ from the right one and from each other."""
     answers = {"", call.answer(solution(call.task))}
-    distinct = []
-    for mistake in misconceptions.mistakes_of(call.task):
+    distinct: list[KnownMistake] = []
+    for mistake in mistakes_of(call.task):
         answer = call.answer(mistake.function)
         if answer not in answers and len(distinct) < WRONG_OPTIONS:
             answers.add(answer)
@@ -308,7 +308,7 @@ def choices(
 def promise_questions() -> Iterator[ChoiceQuestion]:
     """Yield questions that ask which check of a task a known mistake fails."""
     for task, name in PROMISES:
-        (mistake,) = [known for known in misconceptions.mistakes_of(task) if known.name == name]
+        (mistake,) = [known for known in mistakes_of(task) if known.name == name]
         outcomes = run_checks(task, mistake.function)
         (failed,) = [check for check, holds in outcomes.items() if not holds]
         passed = [check for check, holds in outcomes.items() if holds]
@@ -360,7 +360,7 @@ def picture_questions() -> Iterator[ChoiceQuestion]:
     """Yield questions that ask which image a known mistake makes."""
     luminance = colour.luminance(scenes.room(IMAGE_SHAPE))
     for task, names in PICTURES.items():
-        known = {mistake.name: mistake for mistake in misconceptions.mistakes_of(task)}
+        known = {mistake.name: mistake for mistake in mistakes_of(task)}
         mistakes = [known[name] for name in names]
         asked = mistakes[0]
         versions = [
