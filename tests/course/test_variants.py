@@ -395,7 +395,10 @@ def test_assignment_and_hints_of_a_variant_name_only_its_own_values(task, varian
     for parameter, values in SAID[task].items():
         for value, (prose, hint) in values.items():
             if prose is not None:
-                assert (prose in texts["prose"]) == (own[parameter] == value), (prose, texts["prose"])
+                assert (prose in texts["prose"]) == (own[parameter] == value), (
+                    prose,
+                    texts["prose"],
+                )
             if hint is not None:
                 assert (hint in texts["checks"]) == (own[parameter] == value), hint
 

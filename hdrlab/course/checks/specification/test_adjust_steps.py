@@ -14,18 +14,18 @@ def ceiling(T, db, D):
     return STEEPEST * T * db / D
 
 
-def solution(h, db, D, **knobs):
+def solution(h, db, D, **options):
     """Return the states of the library."""
-    return list(ward.adjust_steps(h, STEEPEST * db, D, **knobs))
+    return list(ward.adjust_steps(h, STEEPEST * db, D, **options))
 
 
-def states_of(subject, h, db, D, **knobs):
+def states_of(subject, h, db, D, **options):
     """Return the states of a subject for a range of D nats, passed as on the sheet."""
     extent = D
-    return states(subject.adjust_steps(h, db, extent, **knobs))
+    return states(subject.adjust_steps(h, db, extent, **options))
 
 
-def drawn(rng, bins=50):
+def draw_inputs(rng, bins=50):
     """Return h (bins,), db and D: a scene with two peaks and a larger range than the display.
 
     The paper's pseudo-code compares the trimmings with the first T; Ward's program pcond compares
@@ -38,20 +38,28 @@ def drawn(rng, bins=50):
         low = 300 * np.exp(-(((b - 36) / 1.5) ** 2))
         h = np.round(20 + tall + low + rng.uniform(0, 3, bins))
         db = float(rng.uniform(0.18, 0.24))
-        trims = [(one.trimmings / h.sum(), one.trimmings / one.T) for one in solution(h, db, D)]
+        trims = [
+            (state.trimmings / h.sum(), state.trimmings / state.T) for state in solution(h, db, D)
+        ]
         if all(first > 0.028 or own < 0.022 for first, own in trims) and len(trims) > 3:
             return h, db, D
 
 
-def asked(subject, h, db, D, **knobs):
+def get_answer(subject, h, db, D, **options):
     """Return h after each trim."""
-    came = states_of(subject, h, db, D, **knobs)
-    each = [one[0] if isinstance(one, tuple | list) else one for one in came]
-    found = [finite(one, h.shape, what="h").astype(float) for one in each]
+    answer = states_of(subject, h, db, D, **options)
+    raw_histograms = [state[0] if isinstance(state, tuple | list) else state for state in answer]
+    histograms = [finite(state, h.shape, what="h").astype(float) for state in raw_histograms]
     low = h < 25  # far below every ceiling
-    said = "h: expected bins far below the ceiling to stay as they are, got smaller ones"
-    require(np.all(found[-1][low] >= 0.9 * h[low]), said, expected=h, came=found[-1], kind="curve")
-    return found
+    message = "h: expected bins far below the ceiling to stay as they are, got smaller ones"
+    require(
+        np.all(histograms[-1][low] >= 0.9 * h[low]),
+        message,
+        expected=h,
+        came=histograms[-1],
+        kind="curve",
+    )
+    return histograms
 
 
 # right iterations may differ in their steps, which small inputs show most
@@ -67,14 +75,16 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
 
     Stop when the trimmings are below tolerance times T.
     """
-    h, db, D = drawn(rng)
-    end = asked(subject, h, db, D)[-1]
+    h, db, D = draw_inputs(rng)
+    end = get_answer(subject, h, db, D)[-1]
     T = end.sum()
     above = np.maximum(end - ceiling(T, db, D), 0).sum()
-    said = f"h: expected at most 3 % of T above the ceiling, got {above / T:.1%} of T; trim again"
+    message = (
+        f"h: expected at most 3 % of T above the ceiling, got {above / T:.1%} of T; trim again"
+    )
     require(
         above <= 0.03 * T,
-        said,
+        message,
         expected=solution(h, db, D)[-1].h,
         came=end,
         kind="curve",
@@ -89,13 +99,13 @@ def test_trimmings_are_not_redistributed(subject, rng):
 
     h = minimum(h, ceiling), and nothing else.
     """
-    h, db, D = drawn(rng)
+    h, db, D = draw_inputs(rng)
     for before, after in zip(
-        [h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False
+        [h, *get_answer(subject, h, db, D)], get_answer(subject, h, db, D), strict=False
     ):
-        said = "h: expected that no bin grows in a trim, got larger ones"
+        message = "h: expected that no bin grows in a trim, got larger ones"
         grown = after > before + 1e-6 * before.max()
-        require(not np.any(grown), said, expected=before, came=after, kind="curve")
+        require(not np.any(grown), message, expected=before, came=after, kind="curve")
     require(after.sum() < h.sum(), "h: expected trims, but the histogram did not change")
 
 
@@ -108,10 +118,10 @@ def test_the_last_histogram_is_correct(subject, rng):
 
     D and db are both natural logarithms. Do not mix in log10.
     """
-    h, db, D = drawn(rng)
+    h, db, D = draw_inputs(rng)
     truth = solution(h, db, D)[-1].h
     same(
-        asked(subject, h, db, D)[-1],
+        get_answer(subject, h, db, D)[-1],
         truth,
         0.05 * truth.max(),
         what="h after the last trim",
@@ -128,12 +138,12 @@ def test_a_flat_histogram_is_left_alone(subject, rng):
     Do not scale h, and do not normalize it to a density.
     """
     h = np.full(40, float(rng.integers(50, 90)))
-    same(asked(subject, h, 0.05, float(np.log(100)) / 3)[-1], h, 1e-6, what="h", kind="curve")
+    same(get_answer(subject, h, 0.05, float(np.log(100)) / 3)[-1], h, 1e-6, what="h", kind="curve")
     peak = h.copy()
     peak[7] *= 4
     truth = solution(peak, 0.05, float(np.log(100)) / 3)[-1].h
     same(
-        asked(subject, peak, 0.05, float(np.log(100)) / 3)[-1],
+        get_answer(subject, peak, 0.05, float(np.log(100)) / 3)[-1],
         truth,
         4,
         what="h of one peak",
@@ -150,15 +160,15 @@ def test_each_state_says_what_was_trimmed_at_which_ceiling(subject, rng):
 
     The first state is (h, infinity, sum of h, infinity).
     """
-    h, db, D = drawn(rng)
-    first, second = (parts(one, 4, what="a state") for one in states_of(subject, h, db, D)[:2])
+    h, db, D = draw_inputs(rng)
+    first, second = (parts(state, 4, what="a state") for state in states_of(subject, h, db, D)[:2])
     T = h.sum()
     top = ceiling(T, db, D)
     cut = np.maximum(h - top, 0).sum()
     same(first[0], h, 1e-6, what="h of the first state", kind="curve")
     same(first[2], T, 1e-6 * T, what="T of the first state")
-    said = "the first state: expected an infinite ceiling and an infinite trimmed amount"
-    require(np.isposinf(first[1]) and np.isposinf(first[3]), said)
+    message = "the first state: expected an infinite ceiling and an infinite trimmed amount"
+    require(np.isposinf(first[1]) and np.isposinf(first[3]), message)
     same(second[1], top, 1e-6 * T, what="the ceiling of the first trim")
     same(second[2], T, 1e-6 * T, what="T of the first trim")
     same(second[3], cut, 1e-6 * T, what="the trimmed amount of the first trim")
@@ -174,9 +184,9 @@ def test_tolerance_decides_when_to_stop(subject, rng):
     With a wide display range, every trim cuts off most of what is left: then the second condition
     ends the loop.
     """
-    h, db, D = drawn(rng)
+    h, db, D = draw_inputs(rng)
     for tolerance, width in ((0.2, db), (0.005, db), (0.05, db / 20)):
         expected = solution(h, width, D, tolerance=tolerance)
-        came = states_of(subject, h, width, D, tolerance=tolerance)
+        answer = states_of(subject, h, width, D, tolerance=tolerance)
         what = f"the number of states with tolerance={tolerance} and db={width:.3g}"
-        same(len(came), len(expected), 1, what=what)  # 1: of which T the fraction is taken
+        same(len(answer), len(expected), 1, what=what)  # 1: of which T the fraction is taken

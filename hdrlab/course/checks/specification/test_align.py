@@ -32,24 +32,24 @@ def scene(rng, *, fine=0.05):
 
 def photographs(rng, E, offsets, times, noise=0.004):
     """Return 8-bit photos (P, H, W) that `offsets` align."""
-    taken = []
+    photos = []
     for (dy, dx), t in zip(offsets, times, strict=True):
         X = 0.2 * t * E[MARGIN + dy : MARGIN + dy + H, MARGIN + dx : MARGIN + dx + W]
         X = X + noise * np.sqrt(X + 0.01) * rng.standard_normal(X.shape)
-        taken.append((np.clip(X, 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8))
-    return np.stack(taken)
+        photos.append((np.clip(X, 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8))
+    return np.stack(photos)
 
 
-def drawn(rng, least, most):
+def draw_inputs(rng, min_shift, max_shift):
     """Return an offset (dy, dx), each of `least` to `most` pixels in a random direction."""
-    return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
+    return tuple((rng.choice([-1, 1], 2) * rng.integers(min_shift, max_shift + 1, 2)).tolist())
 
 
-def asked(subject, images, **knobs):
+def get_answer(subject, images, **options):
     """Return the offsets (P, 2) of a subject: (dy, dx), where each image must move."""
-    came = finite(subject.align(images, **knobs), (len(images), 2), what="the offsets")
-    came = came.astype(float)
-    return came
+    answer = finite(subject.align(images, **options), (len(images), 2), what="the offsets")
+    answer = answer.astype(float)
+    return answer
 
 
 # on a few pixels many offsets are equally good, and right functions find different ones
@@ -65,7 +65,7 @@ def test_identical_images_have_offsets_of_zero(subject, rng):
     For copies of one image, all offsets are 0.
     """
     images = photographs(rng, scene(rng), [(0, 0)], [1])
-    same(asked(subject, np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
+    same(get_answer(subject, np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
 
 
 def test_a_shift_of_one_pixel_is_found(subject, rng):
@@ -75,9 +75,9 @@ def test_a_shift_of_one_pixel_is_found(subject, rng):
 
     Try the nine candidates, and take the one with the fewest differing pixels.
     """
-    images = photographs(rng, scene(rng), [(0, 0), drawn(rng, 1, 1)], (1, 1))
-    came = asked(subject, images)
-    same(np.abs(came[1] - came[0]), [1, 1], 0, what="the size of the offset in y and in x")
+    images = photographs(rng, scene(rng), [(0, 0), draw_inputs(rng, 1, 1)], (1, 1))
+    answer = get_answer(subject, images)
+    same(np.abs(answer[1] - answer[0]), [1, 1], 0, what="the size of the offset in y and in x")
 
 
 @points(6)
@@ -90,13 +90,14 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
     XOR the bitmaps, and AND the result with both exclusion bitmaps. The candidate with the smallest
     fraction of differing pixels wins.
     """
-    for least, times in zip(
-        (16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True
-    ):  # 16: on all levels
-        dy, dx = drawn(rng, least, 20)
+    # 16: on all levels
+    for min_shift, times in zip((16, 16, 5, 5, 5, 5), 3 * ((1, 4), (4, 1)), strict=True):
+        dy, dx = draw_inputs(rng, min_shift, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
-        came = asked(subject, images, bits=BITS)
-        same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+        answer = get_answer(subject, images, bits=BITS)
+        same(
+            answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first"
+        )
 
 
 @points(4, needs="test_a_shift_of_one_pixel_is_found")
@@ -109,13 +110,13 @@ def test_in_a_tie_nothing_moves(subject, rng):
     Start with the center, and move only if another candidate has a smaller count.
     """
     flat = np.full((2, 96, 128), int(rng.integers(60, 200)), np.uint8)
-    same(asked(subject, flat), np.zeros((2, 2)), 0, what="the offsets of two uniform images")
+    same(get_answer(subject, flat), np.zeros((2, 2)), 0, what="the offsets of two uniform images")
     for _ in range(3):
         levels = gaussian_filter(rng.standard_normal(160), 2)
         bars = np.tile(128 + 120 * levels / np.abs(levels).max(), (120, 1))
         images = np.stack([bars, rng.uniform(0.6, 0.8) * bars]).astype(np.uint8)
         same(
-            asked(subject, images),
+            get_answer(subject, images),
             np.zeros((2, 2)),
             0,
             what="the offsets of two images of vertical bars",
@@ -131,10 +132,12 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
     Shrink the gray image. Compute the threshold and both bitmaps again at each level.
     """
     for _ in range(2):
-        dy, dx = drawn(rng, 17, 23)
+        dy, dx = draw_inputs(rng, 17, 23)
         images = photographs(rng, scene(rng, fine=1.6), [(0, 0), (dy, dx)], (1, 1.5))
-        came = asked(subject, images, bits=BITS)
-        same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+        answer = get_answer(subject, images, bits=BITS)
+        same(
+            answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first"
+        )
 
 
 @points(2)
@@ -147,11 +150,11 @@ def test_noise_near_the_median_does_not_count(subject, rng):
 
     AND the differences with both exclusion bitmaps before you count.
     """
-    dy, dx = drawn(rng, 3, 12)
+    dy, dx = draw_inputs(rng, 3, 12)
     images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], (1, 1))
     images[:, :, :128] = np.median(images[:, :, 128:]) + rng.integers(-2, 3, (H, 128))
-    came = asked(subject, images, bits=BITS)
-    same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+    answer = get_answer(subject, images, bits=BITS)
+    same(answer[1] - answer[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
 @points(4)
@@ -165,10 +168,10 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     """
     E = scene(rng)
     dy, dx = (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
-    came = asked(subject, photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4)
-    same(came[0] - came[1], [dy, dx], 0, what="the offset at 4 bits")
-    came = asked(subject, photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1)
-    same(came[0] - came[1], [1, -1], 0, what="the offset at 1 bit")
+    answer = get_answer(subject, photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4)
+    same(answer[0] - answer[1], [dy, dx], 0, what="the offset at 4 bits")
+    answer = get_answer(subject, photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1)
+    same(answer[0] - answer[1], [1, -1], 0, what="the offset at 1 bit")
 
 
 @points(6)
@@ -180,9 +183,9 @@ def test_a_bracket_is_aligned_in_pairs_to_its_middle_image(subject, rng):
 
     Sort by brightness to form the pairs, but return the offsets in the order of the input images.
     """
-    true = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
-    true -= true[2]
-    images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))
+    true_offsets = np.cumsum(rng.choice([-1, 1], 2) * rng.integers(3, 8, (5, 2)), axis=0)
+    true_offsets -= true_offsets[2]
+    images = photographs(rng, scene(rng), true_offsets, 2.0 ** np.arange(-2, 3))
     # the image of middle brightness is neither the first of the list nor in its middle
     order = np.insert(rng.permutation([0, 1, 3, 4]), rng.choice([1, 3, 4]), 2)
-    same(asked(subject, images[order], bits=BITS), true[order], 1, what="the offsets")
+    same(get_answer(subject, images[order], bits=BITS), true_offsets[order], 1, what="the offsets")

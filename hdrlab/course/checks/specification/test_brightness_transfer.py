@@ -6,7 +6,7 @@ from hdrlab.core.transfer import brightness_transfer
 from hdrlab.course.checks.compare import finite, points, same
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return the histograms of two photos with equally many pixels, B the brighter one."""
     n = int(rng.integers(50, 80))
     h = rng.integers(5, 60, (2, n)) + np.linspace(60, 0, n).astype(int) * [[1], [0]]
@@ -40,12 +40,12 @@ def test_pixels_of_equal_rank_correspond(subject, rng):
     Find this rank in B by linear interpolation between the edges of the pixel values: H_B(z) at z -
     1/2 and H_B(z + 1) at z + 1/2.
     """
-    h_A, h_B = drawn(rng)
+    h_A, h_B = draw_inputs(rng)
     T = brightness_transfer(h_A, h_B)
-    came = finite(
+    answer = finite(
         np.nan_to_num(np.asarray(subject.brightness_transfer(h_A, h_B), float)), T.shape, what="T"
     )
-    same(came, on_the_sheet(T), 0.02, what="T", kind="curve", where=sure(T, len(T)))
+    same(answer, on_the_sheet(T), 0.02, what="T", kind="curve", where=sure(T, len(T)))
 
 
 @points(2)
@@ -56,10 +56,10 @@ def test_a_photo_compared_with_itself_keeps_its_levels(subject, rng):
 
     T(m) = m, not m + 1/2.
     """
-    h, _ = drawn(rng)
-    came = subject.brightness_transfer(h, h)
+    h, _ = draw_inputs(rng)
+    answer = subject.brightness_transfer(h, h)
     levels = on_the_sheet(np.arange(float(len(h))))
-    same(came[1:-1], levels[1:-1], 0.02, what="T of one photograph", kind="curve")
+    same(answer[1:-1], levels[1:-1], 0.02, what="T of one photograph", kind="curve")
 
 
 @points(2, needs="test_pixels_of_equal_rank_correspond")
@@ -71,15 +71,15 @@ def test_T_is_not_known_at_the_end_levels_of_b(subject, rng):
 
     Set T to NaN where it falls on pixel value 0 or n - 1 of B.
     """
-    h_A, h_B = drawn(rng)
+    h_A, h_B = draw_inputs(rng)
     h_A[-3:] += h_A.sum() // 8
     h_B[-1] += h_B.sum() // 3
     T = brightness_transfer(h_A, h_B)
     T = on_the_sheet(T)
     same(subject.brightness_transfer(h_A, h_B)[-3:], T[-3:], 0.02, what="T of the brightest")
     T = brightness_transfer(h_A[::-1], h_B[::-1])
-    came = subject.brightness_transfer(h_A[::-1], h_B[::-1])
-    same(came[:3], on_the_sheet(T)[:3], 0.02, what="T of the darkest")
+    answer = subject.brightness_transfer(h_A[::-1], h_B[::-1])
+    same(answer[:3], on_the_sheet(T)[:3], 0.02, what="T of the darkest")
 
 
 @points(1, needs="test_pixels_of_equal_rank_correspond")
@@ -90,9 +90,9 @@ def test_the_number_of_pixels_does_not_matter(subject, rng):
 
     Divide each histogram by its own sum.
     """
-    h_A, h_B = drawn(rng)
+    h_A, h_B = draw_inputs(rng)
     T = brightness_transfer(h_A, h_B)
-    came = subject.brightness_transfer(h_A, 3 * h_B)
+    answer = subject.brightness_transfer(h_A, 3 * h_B)
     expected = on_the_sheet(T)
     where = sure(T, len(T))
-    same(came, expected, 0.02, what="T of three times the pixels", kind="curve", where=where)
+    same(answer, expected, 0.02, what="T of three times the pixels", kind="curve", where=where)

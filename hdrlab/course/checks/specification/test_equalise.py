@@ -10,7 +10,7 @@ SHAPE = (60, 80)
 TOLERANCE = 0.025
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a window (H, W) of two surfaces with texture, a factor of about a hundred apart."""
     y, x = np.indices(SHAPE)
     ln_L = rng.normal(0, 0.5, SHAPE) + 3 * rng.uniform(0.8, 1.2) * (x > rng.integers(25, 50))
@@ -25,9 +25,9 @@ def displayed(Ld):
     return Ld
 
 
-def same_window(subject, L, what="Ld", **knobs):
-    Ld = displayed(brush.equalise(L, **knobs))
-    same(subject.equalise(L, **knobs), Ld, TOLERANCE, what=what, picture=True)
+def same_window(subject, L, what="Ld", **options):
+    Ld = displayed(brush.equalise(L, **options))
+    same(subject.equalise(L, **options), Ld, TOLERANCE, what=what, picture=True)
 
 
 # in an image of a few pixels the result depends on where the edges of the bins are
@@ -43,7 +43,7 @@ def test_all_codes_are_equally_frequent(subject, rng):
 
     Add up the histogram of ln L to P, interpolate P at each pixel, and decode it as sRGB.
     """
-    same_window(subject, drawn(rng), bins=256, limit=100.0)
+    same_window(subject, draw_inputs(rng), bins=256, limit=100.0)
 
 
 @points(5)
@@ -54,7 +54,7 @@ def test_no_bin_gets_more_codes_than_the_limit(subject, rng):
 
     Clip the histogram at limit / bins before you add it up, as in the task before.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     L[:, :30] = np.exp(rng.normal(1, 0.15, (SHAPE[0], 30)))
     for limit in (2.5, float(rng.uniform(3, 4))):
         same_window(subject, L, bins=256, limit=limit, what=f"Ld for a limit of {limit:.3g}")
@@ -68,7 +68,7 @@ def test_a_hot_and_a_dead_pixel_change_nothing(subject, rng):
 
     Let the bins reach from the second smallest to the second largest luminance.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     L[7, 11] = 1e6 * L.max()
     L[20, 40] = 1e-6 * L.min()
     same_window(subject, L, bins=256, limit=1.2)
@@ -94,7 +94,7 @@ def test_the_unit_of_the_luminance_cancels(subject, rng):
 
     A factor shifts ln L, and the bins with it.
     """
-    L = drawn(rng)
+    L = draw_inputs(rng)
     before = finite(subject.equalise(L, bins=256, limit=4.0), SHAPE, what="Ld").astype(float)
-    came = subject.equalise(L * np.float32(1000), bins=256, limit=4.0)
-    same(came, before, TOLERANCE, what="Ld in another unit", picture=True)
+    answer = subject.equalise(L * np.float32(1000), bins=256, limit=4.0)
+    same(answer, before, TOLERANCE, what="Ld in another unit", picture=True)

@@ -10,7 +10,7 @@ from hdrlab.course.checks.compare import finite, points, same
 SHAPE = (36, 48)
 
 
-def drawn(rng):
+def draw_inputs(rng):
     """Return a guide of two walls with texture, another image of the same walls, and the
     parameters.
     """
@@ -26,14 +26,14 @@ def inside(radius):
     return mask
 
 
-def asked(subject, *images, radius, epsilon):
+def get_answer(subject, *images, radius, epsilon):
     """Return the answer of a subject for the variance `epsilon`, passed as on the sheet."""
     return subject.guided(*images, radius=radius, epsilon=epsilon)
 
 
-def solution(*images, **knobs):
+def solution(*images, **options):
     """Return the right answer, of a guide and of the image to filter, if it is another one."""
-    return guided(*images, **knobs)
+    return guided(*images, **options)
 
 
 # near a border, where all pixels of a small image are, right filters differ
@@ -48,10 +48,17 @@ def test_an_image_is_smoothed_along_its_guide(subject, rng):
 
     All means are over (2 r + 1) x (2 r + 1) pixels, and cov(I, p) = mean(I p) - mean(I) mean(p).
     """
-    guide, p, knobs = drawn(rng)
-    expected = solution(guide, p, **knobs)
-    where = inside(knobs["radius"])
-    same(asked(subject, guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, options = draw_inputs(rng)
+    expected = solution(guide, p, **options)
+    where = inside(options["radius"])
+    same(
+        get_answer(subject, guide, p, **options),
+        expected,
+        1e-3,
+        what="q",
+        picture=True,
+        where=where,
+    )
 
 
 @points(4)
@@ -63,10 +70,10 @@ def test_an_image_that_guides_itself_keeps_its_edges(subject, rng):
 
     cov(I, I) is the variance of I.
     """
-    guide, _, knobs = drawn(rng)
-    expected = solution(guide, **knobs)
-    where = inside(knobs["radius"])
-    same(asked(subject, guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, _, options = draw_inputs(rng)
+    expected = solution(guide, **options)
+    where = inside(options["radius"])
+    same(get_answer(subject, guide, **options), expected, 1e-3, what="q", picture=True, where=where)
 
 
 @points(1, needs="test_an_image_is_smoothed_along_its_guide")
@@ -77,11 +84,18 @@ def test_a_large_epsilon_leaves_the_mean_of_means(subject, rng):
 
     Average b, too: the result is a mean of means.
     """
-    guide, p, knobs = drawn(rng)
-    knobs["epsilon"] = 1e6
-    expected = solution(guide, p, **knobs)
-    where = inside(knobs["radius"])
-    same(asked(subject, guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
+    guide, p, options = draw_inputs(rng)
+    options["epsilon"] = 1e6
+    expected = solution(guide, p, **options)
+    where = inside(options["radius"])
+    same(
+        get_answer(subject, guide, p, **options),
+        expected,
+        1e-3,
+        what="q",
+        picture=True,
+        where=where,
+    )
 
 
 @points(2)
@@ -92,6 +106,8 @@ def test_scaling_and_shifting_p_scales_and_shifts_q(subject, rng):
 
     A constant added to p goes into b. A factor of p goes into a and b.
     """
-    guide, p, knobs = drawn(rng)
-    q, again = (finite(asked(subject, guide, x, **knobs), SHAPE, what="q") for x in (p, 2 * p + 3))
-    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(knobs["radius"]))
+    guide, p, options = draw_inputs(rng)
+    q, again = (
+        finite(get_answer(subject, guide, x, **options), SHAPE, what="q") for x in (p, 2 * p + 3)
+    )
+    same(again, 2 * q + 3, 1e-3, what="q of 2 p + 3", picture=True, where=inside(options["radius"]))

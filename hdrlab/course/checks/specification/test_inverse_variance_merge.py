@@ -31,17 +31,17 @@ def counted(rng, times=TIMES, dimmest=2.0):
     ), E
 
 
-def asked(subject, given):
+def get_answer(subject, inputs):
     """Return the student's E and s, for a read noise of R electrons, passed as on the sheet."""
-    X, D, measured, t, N, R = given
+    X, D, measured, t, N, R = inputs
     noise = R
     E, spread = parts(subject.inverse_variance_merge(X, D, measured, t, N, noise), 2)
     s = finite(spread, SHAPE, what="s").astype(float)
     return finite(E, SHAPE, what="E").astype(float), s
 
 
-def alike(came, expected, tolerance, what, unit=1.0):
-    same(came / unit, expected / unit, tolerance, what=what, picture=True)
+def alike(answer, expected, tolerance, what, unit=1.0):
+    same(answer / unit, expected / unit, tolerance, what=what, picture=True)
 
 
 def is_valid_input(X, D, measured, t, *_, **__):
@@ -57,12 +57,12 @@ def test_a_single_photo_keeps_its_own_noise(subject, rng):
 
     s is a standard deviation: the square root of V = variance(X, D, N, R) / t^2.
     """
-    given, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
-    X, D, _, t, N, R = given
-    E, s = asked(subject, given)
+    inputs, _ = counted(rng, np.array([float(rng.uniform(3, 6))]), dimmest=20.0)
+    X, D, _, t, N, R = inputs
+    E, s = get_answer(subject, inputs)
     alike(E, X[0] / t, 1e-3, "E / (X / t)", X[0] / t)
-    true = np.sqrt(variance(X[0], D[0], N, R)) / t
-    alike(s, true, 0.02, "s / the standard deviation of one photo", true)
+    truth = np.sqrt(variance(X[0], D[0], N, R)) / t
+    alike(s, truth, 0.02, "s / the standard deviation of one photo", truth)
 
 
 @points(2)
@@ -76,13 +76,13 @@ def test_equal_exposure_times_give_the_plain_mean(subject, rng):
     Compute V from E t, once you know E, and not from the count of each photo. Then all weights are
     equal.
     """
-    given, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
-    X, D, _, _, N, R = given
-    E, s = asked(subject, given)
+    inputs, _ = counted(rng, np.full(4, 2.0), dimmest=20.0)
+    X, D, _, _, N, R = inputs
+    E, s = get_answer(subject, inputs)
     plain = X.mean(axis=0) / 2
     alike(E, plain, 0.005, "E / the plain mean", plain)
-    true = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
-    alike(s, true, 0.02, "s / half the standard deviation of one photo", true)
+    truth = np.sqrt(variance(2 * plain, D[0], N, R)) / 4
+    alike(s, truth, 0.02, "s / half the standard deviation of one photo", truth)
 
 
 @points(2)
@@ -94,9 +94,9 @@ def test_a_photo_that_does_not_measure_a_pixel_is_ignored(subject, rng):
     Set its V to infinity: then 1 / V is 0.
     """
     (X, D, measured, *rest), _ = counted(rng)
-    before = asked(subject, (X, D, measured, *rest))
+    before = get_answer(subject, (X, D, measured, *rest))
     D = np.where(measured, D, 1e-4)
-    E, s = asked(subject, (np.where(measured, X, 0.5), D, measured, *rest))
+    E, s = get_answer(subject, (np.where(measured, X, 0.5), D, measured, *rest))
     alike(E, before[0], 1e-3, "E after changing unmeasured values / E before", before[0])
     alike(s, before[1], 1e-3, "s after changing unmeasured values / s before", before[1])
 
@@ -110,11 +110,11 @@ def test_each_measurement_is_weighted_by_its_inverse_variance(subject, rng):
 
     E = sum(x / V) / sum(1 / V), and s^2 = 1 / sum(1 / V).
     """
-    given, _ = counted(rng)
-    E, s = asked(subject, given)
-    true = inverse_variance_merge(*given)
-    alike(E, true[0], 0.05, "E, in standard deviations", true[1])
-    alike(s, true[1], 0.05, "s / the correct s", true[1])
+    inputs, _ = counted(rng)
+    E, s = get_answer(subject, inputs)
+    truth = inverse_variance_merge(*inputs)
+    alike(E, truth[0], 0.05, "E, in standard deviations", truth[1])
+    alike(s, truth[1], 0.05, "s / the correct s", truth[1])
 
 
 @points(7)
@@ -125,12 +125,17 @@ def test_no_other_mean_has_a_smaller_error(subject, rng):
 
     Any weights other than 1 / V make the error of E larger.
     """
-    given, scene = counted(rng)
-    best, s = inverse_variance_merge(*given)
-    least, came = (
-        np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, asked(subject, given)[0])
+    inputs, scene = counted(rng)
+    best, s = inverse_variance_merge(*inputs)
+    smallest_error, answer = (
+        np.sqrt(np.mean(((E - scene) / s) ** 2)) for E in (best, get_answer(subject, inputs)[0])
     )
-    same(max(came / least, 1.0), 1.0, 0.02, what="root mean square error / the smallest possible")
+    same(
+        max(answer / smallest_error, 1.0),
+        1.0,
+        0.02,
+        what="root mean square error / the smallest possible",
+    )
 
 
 @points(2)
@@ -142,8 +147,8 @@ def test_95_percent_of_the_pixels_lie_within_1_96_standard_deviations(subject, r
 
     Several photos together are more certain than one: s^2 = 1 / sum(1 / V).
     """
-    given, scene = counted(rng)
-    E, s = asked(subject, given)
+    inputs, scene = counted(rng)
+    E, s = get_answer(subject, inputs)
     same(
         100 * np.mean(np.abs(E - scene) < 1.96 * s),
         95.0,

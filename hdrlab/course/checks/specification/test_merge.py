@@ -27,29 +27,29 @@ def photographs(rng, E, times=TIMES):
     return np.clip(np.round(255 * M + 3 * rng.standard_normal(M.shape)), 20, 235).astype(np.uint8)
 
 
-def positive(came, shape):
+def positive(answer, shape):
     """Return a map of this shape as float64, whose values must all be above 0."""
-    E = finite(came, shape, what="E").astype(float)
-    said = f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not"
-    require(np.all(E > 0), said, came=E)
+    E = finite(answer, shape, what="E").astype(float)
+    message = f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not"
+    require(np.all(E > 0), message, came=E)
     return E
 
 
-def map_of(came, images):
+def map_of(answer, images):
     """Return a map as float64, which must be brighter where the photos are."""
-    E = positive(came, images.shape[1:])
+    E = positive(answer, images.shape[1:])
     follows = np.corrcoef(np.log(E).ravel(), images.mean(axis=0).ravel())[0, 1] > 0.5
     require(follows, "E: expected more radiance where the photos are brighter", came=E)
     return E
 
 
-def same_map(came, truth, tolerance=0.01, **knobs):
+def same_map(answer, truth, tolerance=0.01, **options):
     """Compare the logarithms of two maps, because errors of radiance are ratios."""
-    E = positive(came, truth.shape)
-    same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
+    E = positive(answer, truth.shape)
+    same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **options)
 
 
-def asked(subject, images, times, g, *w):
+def get_answer(subject, images, times, g, *w):
     """Return the map of a subject for photos with these times in seconds, passed as on the sheet."""
     exposures = times
     return subject.merge(images, exposures, g, *w)
@@ -86,7 +86,7 @@ def test_every_pixel_has_a_finite_radiance(subject, rng):
     No value may be NaN, infinite or below 0.
     """
     images = photographs(rng, smooth(rng))
-    E = finite(asked(subject, images, TIMES, G), images.shape[1:], what="E")
+    E = finite(get_answer(subject, images, TIMES, G), images.shape[1:], what="E")
     require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E)
 
 
@@ -99,7 +99,7 @@ def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
     ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j), and E = exp(ln E).
     """
     images = photographs(rng, smooth(rng))
-    same_map(asked(subject, images, TIMES, G), solution(images, TIMES, G))
+    same_map(get_answer(subject, images, TIMES, G), solution(images, TIMES, G))
 
 
 @points(4)
@@ -112,11 +112,11 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
     """
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
-    taken = camera.shoot(E, times, camera.Camera(response="gamma"))
-    came = np.log(
-        finite(asked(subject, taken.images, taken.times, G), E.shape, what="E").astype(float)
+    photos = camera.shoot(E, times, camera.Camera(response="gamma"))
+    answer = np.log(
+        finite(get_answer(subject, photos.images, photos.times, G), E.shape, what="E").astype(float)
     )
-    ratio = came - np.log(E)
+    ratio = answer - np.log(E)
     same(
         ratio - np.median(ratio),
         np.zeros(E.shape),
@@ -125,10 +125,16 @@ def test_the_radiance_of_a_simulated_scene_is_recovered(subject, rng):
         picture=True,
     )
     step = np.log(
-        finite(asked(subject, taken.images, 8 * taken.times, G), E.shape, what="E").astype(float)
+        finite(get_answer(subject, photos.images, 8 * photos.times, G), E.shape, what="E").astype(
+            float
+        )
     )
     same(
-        step, came - np.log(8), 1e-3, what="ln E with exposure times 8 times as long", picture=True
+        step,
+        answer - np.log(8),
+        1e-3,
+        what="ln E with exposure times 8 times as long",
+        picture=True,
     )
 
 
@@ -142,13 +148,13 @@ def test_the_given_weights_are_used(subject, rng):
     """
     images = photographs(rng, smooth(rng))
     for w in (weights.gaussian(), 0.05 + np.linspace(0, 1, 256) ** 2):
-        each = [
-            map_of(asked(subject, images[[j]], TIMES[[j]], G, w), images[[j]])
+        photo_maps = [
+            map_of(get_answer(subject, images[[j]], TIMES[[j]], G, w), images[[j]])
             for j in range(len(images))
         ]
         W = w[images]
-        mean = np.average(np.log(each), axis=0, weights=W)
-        same_map(asked(subject, images, TIMES, G, w), np.exp(mean))
+        mean = np.average(np.log(photo_maps), axis=0, weights=W)
+        same_map(get_answer(subject, images, TIMES, G, w), np.exp(mean))
 
 
 @points(2)
@@ -161,8 +167,8 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """
     images = photographs(rng, smooth(rng))
     order = [1, 2, 0]
-    expected = map_of(asked(subject, images, TIMES, G), images)
-    same_map(asked(subject, images[order], TIMES[order], G), expected)
+    expected = map_of(get_answer(subject, images, TIMES, G), images)
+    same_map(get_answer(subject, images[order], TIMES[order], G), expected)
 
 
 @points(2)
@@ -175,10 +181,11 @@ def test_each_channel_uses_its_own_curve(subject, rng):
     """
     images = np.stack([photographs(rng, smooth(rng)) for _ in range(3)], axis=-1)
     g = np.stack([G, responses.true_g("linear"), responses.true_g("film")], axis=-1)
-    each = [
-        map_of(asked(subject, images[..., c], TIMES, g[:, c]), images[..., c]) for c in range(3)
+    channel_maps = [
+        map_of(get_answer(subject, images[..., c], TIMES, g[:, c]), images[..., c])
+        for c in range(3)
     ]
-    same_map(asked(subject, images, TIMES, g), np.stack(each, axis=-1))
+    same_map(get_answer(subject, images, TIMES, g), np.stack(channel_maps, axis=-1))
 
 
 @points(3)
@@ -193,4 +200,4 @@ def test_clipped_levels_do_not_count(subject, rng):
     part = rng.integers(0, 4, images.shape[1:])
     images[0][part == 0] = 0
     images[2][part == 1] = 255
-    same_map(asked(subject, images, TIMES, G), solution(images, TIMES, G))
+    same_map(get_answer(subject, images, TIMES, G), solution(images, TIMES, G))

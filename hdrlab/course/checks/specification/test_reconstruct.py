@@ -18,7 +18,7 @@ def away_from_limit(Z):
     return np.where((Z == LIMIT - 1) | (Z == LIMIT), LIMIT - 2, Z).astype(Z.dtype)
 
 
-def drawn(rng, top=0.9):
+def draw_inputs(rng, top=0.9):
     """Return Z and e of a soft scene that the darkest filter always measures."""
     e = tile(assorted.FOUR_EXPOSURES, SHAPE)
     y, x = np.indices(SHAPE) / SHAPE[1]
@@ -28,13 +28,13 @@ def drawn(rng, top=0.9):
     return away_from_limit(Z), e
 
 
-def same_map(subject, Z, e, c=None, what="E", **knobs):
+def same_map(subject, Z, e, c=None, what="E", **options):
     """Compare the map with the library's, relative to each value."""
     full = np.where(Z >= LIMIT, 255, Z).astype(Z.dtype)
-    E = assorted.reconstruct(full, e, c, **knobs)
+    E = assorted.reconstruct(full, e, c, **options)
     filters = e
-    came = same(subject.reconstruct(Z, filters, c, **knobs), E, 5e-3 * E.max(), what=what)
-    same(came / E, np.ones(E.shape), 5e-3, what=f"{what} / the right {what}", picture=E.ndim == 2)
+    answer = same(subject.reconstruct(Z, filters, c, **options), E, 5e-3 * E.max(), what=what)
+    same(answer / E, np.ones(E.shape), 5e-3, what=f"{what} / the right {what}", picture=E.ndim == 2)
 
 
 @points(3)
@@ -58,7 +58,7 @@ def test_full_pixels_do_not_count(subject, rng):
 
     w = 0 where X is 0.995 or more.
     """
-    Z, e = drawn(rng)
+    Z, e = draw_inputs(rng)
     near_limit = (e == 1) & (rng.random(SHAPE) < 0.3)
     Z[near_limit] = rng.choice([LIMIT - 1, LIMIT], np.count_nonzero(near_limit))
     same_map(subject, Z, e, sigma=0.6)
@@ -72,7 +72,7 @@ def test_pixels_are_weighted_by_the_inverse_of_their_variance(subject, rng):
 
     w = e^2 / (X / N + (R / N)^2 + 1 / (12 255^2)).
     """
-    Z, e = drawn(rng)
+    Z, e = draw_inputs(rng)
     same_map(subject, Z, e, sigma=1.0, full_well=2000.0, read_noise=20.0)
     # in the dark of such a sensor, rounding is the largest error
     same_map(subject, Z, e, sigma=1.0, full_well=1e5, read_noise=5.0, what="E of a large sensor")
@@ -86,7 +86,7 @@ def test_each_color_is_a_mean_of_its_own_pixels(subject, rng):
 
     Set the weight to 0 at all pixels of other colors, once for each color, and stack the three maps.
     """
-    Z, _ = drawn(rng, top=0.2)
+    Z, _ = draw_inputs(rng, top=0.2)
     c, e = (tile(pattern, SHAPE) for pattern in assorted.colours_and_exposures([1.0, 1 / 64]))
     light = rng.uniform(0.3, 0.8, 3) * (1 + 0.3 * np.sin(np.arange(SHAPE[1]) / 6))[:, None]
     Z = away_from_limit(assorted.shoot(np.broadcast_to(light, (*SHAPE, 3)), e, c, rng=rng))

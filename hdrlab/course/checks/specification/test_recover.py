@@ -12,15 +12,15 @@ from hdrlab.response import mitsunaga
 SHOWN = slice(25, 246)
 
 
-def asked(subject, images, times, channels=(), **knobs):
+def get_answer(subject, images, times, channels=(), **options):
     """Return g in nats, shifted to g[128] = 0, for times in seconds, passed as on the sheet.
 
     Minus infinity at level 0 is replaced by the log of half of level 1.
     """
     exposures = times
-    came = numbers(subject.recover(images, exposures, **knobs), what="g")
+    answer = numbers(subject.recover(images, exposures, **options), what="g")
     nats = 1
-    g = nats * as_shape(came, (256, *channels), "g").astype(float)
+    g = nats * as_shape(answer, (256, *channels), "g").astype(float)
     g[0] = np.where(np.isneginf(g[0]), g[1] - np.log(2), g[0])
     g = finite(g, (256, *channels), what="g")
     return g - g[128]
@@ -42,20 +42,20 @@ def settled(rng):
     """
     for _ in range(20):
         response = laws.drawn_response(rng)
-        taken = photographs(rng, response)
-        g = mitsunaga.recover(taken.images, taken.times, order=5)
+        photos = photographs(rng, response)
+        g = mitsunaga.recover(photos.images, photos.times, order=5)
         slope = 255 * np.diff(np.exp(g - g[255]))[1:].min()
         if slope > 0.01 and laws.curve_error(g, responses.true_g(response)) < 0.005:
             break
-    return response, taken
+    return response, photos
 
 
 def same_curve(g, response, tolerance):
     """Compare f^-1 = exp g, with its unit fitted, over levels 10 to 250."""
     truth = responses.true_g(response)
     error = laws.curve_error(g, truth)
-    said = f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}"
-    require(error <= tolerance, said, expected=truth, came=g, kind="curve")
+    message = f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}"
+    require(error <= tolerance, message, expected=truth, came=g, kind="curve")
 
 
 # few pixels do not determine a curve, and right fits of them differ
@@ -70,8 +70,8 @@ def test_every_level_above_0_has_a_finite_g(subject, rng):
 
     Instead, you can give pixel value 0 a fraction of the f^-1 of pixel value 1.
     """
-    taken = photographs(rng, "linear", frames=3)
-    asked(subject, taken.images, taken.times, order=3)
+    photos = photographs(rng, "linear", frames=3)
+    get_answer(subject, photos.images, photos.times, order=3)
 
 
 @points(7)
@@ -85,8 +85,8 @@ def test_the_curve_of_a_camera_is_recovered(subject, rng):
     the scale.
     """
     for _ in range(2):
-        response, taken = settled(rng)
-        same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
+        response, photos = settled(rng)
+        same_curve(get_answer(subject, photos.images, photos.times, order=5), response, 0.025)
 
 
 @points(5, needs="test_the_curve_of_a_camera_is_recovered")
@@ -97,9 +97,9 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
 
     Sort the frames by their times first.
     """
-    response, taken = settled(rng)
-    order = rng.permutation(len(taken.times))
-    shuffled = asked(subject, taken.images[order], taken.times[order], order=5)
+    response, photos = settled(rng)
+    order = rng.permutation(len(photos.times))
+    shuffled = get_answer(subject, photos.images[order], photos.times[order], order=5)
     same_curve(shuffled, response, 0.025)
 
 
@@ -113,12 +113,12 @@ def test_rough_times_are_corrected(subject, rng):
     Alternate between coefficients and ratios until f^-1 changes by less than eps.
     """
     for frame, factor in ((1, 1.3), (2, 1 / 1.3)):
-        taken = photographs(rng, "linear", frames=4)
-        rough = taken.times.copy()
+        photos = photographs(rng, "linear", frames=4)
+        rough = photos.times.copy()
         rough[frame] *= (
             factor  # one frame in the middle; a constant factor per stop could not be detected
         )
-        same_curve(asked(subject, taken.images, rough, order=3), "linear", 0.015)
+        same_curve(get_answer(subject, photos.images, rough, order=3), "linear", 0.015)
 
 
 @points(4, needs="test_the_curve_of_a_camera_is_recovered")
@@ -130,8 +130,8 @@ def test_the_curve_rises_at_all_levels(subject, rng):
     Clamp the differences of f^-1 between neighboring pixel values before you take the logarithm.
     """
     for response in (laws.drawn_response(rng), laws.drawn_response(rng)):
-        taken = photographs(rng, response)
-        g = asked(subject, taken.images, taken.times, order=6)
+        photos = photographs(rng, response)
+        g = get_answer(subject, photos.images, photos.times, order=6)
         falls = np.sum(np.diff(g) < -1e-6)
         require(falls == 0, f"g: expected a curve that rises, got {falls} falls", came=g)
         same_curve(g, response, 0.05)
@@ -145,8 +145,8 @@ def test_three_equal_channels_have_the_gray_curve(subject, rng):
 
     Three equal channels must all have the curve of the gray photo.
     """
-    taken = photographs(rng, "gamma", frames=4)
-    rgb = asked(subject, np.stack([taken.images] * 3, axis=-1), taken.times, (3,), order=5)
-    gray = asked(subject, taken.images, taken.times, order=5)
+    photos = photographs(rng, "gamma", frames=4)
+    rgb = get_answer(subject, np.stack([photos.images] * 3, axis=-1), photos.times, (3,), order=5)
+    gray = get_answer(subject, photos.images, photos.times, order=5)
     same(rgb[SHOWN], np.stack([gray] * 3, axis=-1)[SHOWN], 0.02, what="g at levels 25 to 245")
     same_curve(gray, "gamma", 0.025)

@@ -13,14 +13,14 @@ SHOWN = "test_the_scene_fits_the_range_of_a_display"
 OPERATOR = "test_it_is_the_photographic_operator"
 
 
-def asked(subject):
+def get_answer(subject):
     """Return the subject's operator with its result as float32, the type in which images are
     sent.
     """
     return lambda L: numbers(subject.tonemap(L), what="Ld").astype(np.float32)
 
 
-def drawn(rng, shape=(96, 128)):
+def draw_inputs(rng, shape=(96, 128)):
     """Return luminance over a few decades, without black."""
     soft = gaussian_filter(rng.standard_normal(shape), 6)
     return np.exp(1.5 * soft / soft.std() + 0.2 * rng.standard_normal(shape)).astype(np.float32)
@@ -51,12 +51,12 @@ def test_it_is_the_photographic_operator(subject, rng):
     given.
     """
     for key, white in ((0.18, np.inf), (float(rng.uniform(0.3, 0.7)), float(rng.uniform(1.5, 4)))):
-        L = drawn(rng)
+        L = draw_inputs(rng)
         Lm = scaled(L, key)
         what = f"Ld with key={key:.3g} and white={white:.3g}"
-        came = subject.tonemap(L, key=key, white=white)
+        answer = subject.tonemap(L, key=key, white=white)
         expected = displayed(Lm, Lm, white)
-        same(came, expected, 0.01, what=what, picture=True)
+        same(answer, expected, 0.01, what=what, picture=True)
 
 
 @points(6, needs=OPERATOR)
@@ -68,14 +68,13 @@ def test_the_default_white_is_the_brightest_luminance_without_outliers(subject, 
 
     white = max(1, np.quantile(Lm, 0.9999)). Compute it after scaling to the key.
     """
-    L = drawn(rng)
-    L[:6, :9] = (
-        float(rng.uniform(1.5, 3)) * L.max()
-    )  # so many that every rule of quantiles finds them
-    for one in (L, L**0.1):  # all of the second one is below 1
-        Lm = scaled(one)
+    L = draw_inputs(rng)
+    # so many that every rule of quantiles finds them
+    L[:6, :9] = float(rng.uniform(1.5, 3)) * L.max()
+    for luminance in (L, L**0.1):  # all of the second one is below 1
+        Lm = scaled(luminance)
         expected = displayed(Lm, Lm, max(1.0, Lm.max()))
-        same(subject.tonemap(one), expected, 0.01, what="Ld without a white", picture=True)
+        same(subject.tonemap(luminance), expected, 0.01, what="Ld without a white", picture=True)
 
 
 @points(6, needs=OPERATOR)
@@ -87,18 +86,16 @@ def test_local_divides_each_pixel_by_its_neighborhood(subject, rng):
 
     phi and threshold decide the width: pass them on to your scale_steps.
     """
-    for knobs in ({}, {"phi": 12.0, "threshold": 0.02}):
-        L = drawn(rng)
+    for options in ({}, {"phi": 12.0, "threshold": 0.02}):
+        L = draw_inputs(rng)
         Lm = scaled(L)
-        expected = displayed(Lm, reinhard.local_adaptation(Lm, **knobs), np.inf)
-        came = finite(
-            subject.tonemap(L, white=np.inf, local=True, **knobs), L.shape, what="Ld"
+        expected = displayed(Lm, reinhard.local_adaptation(Lm, **options), np.inf)
+        answer = finite(
+            subject.tonemap(L, white=np.inf, local=True, **options), L.shape, what="Ld"
         ).astype(float)
-        off = np.mean(np.abs(came - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
-        said = (
-            f"Ld with local=True{knobs or ''}: {off:.0%} of the pixels differ from what is expected"
-        )
-        require(off <= 0.03, said, expected=expected, came=came, kind="image")
+        off = np.mean(np.abs(answer - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
+        message = f"Ld with local=True{options or ''}: {off:.0%} of the pixels differ from what is expected"
+        require(off <= 0.03, message, expected=expected, came=answer, kind="image")
 
 
 @points(2)
@@ -110,7 +107,7 @@ def test_the_scene_fits_the_range_of_a_display(subject):
     At least half of the pixels must be between 0.01 and 0.99, and pixels of different luminance
     must differ in the image.
     """
-    laws.shows_the_scene(asked(subject))
+    laws.shows_the_scene(get_answer(subject))
 
 
 @points(3, needs=SHOWN)
@@ -122,7 +119,7 @@ def test_the_result_stays_in_range_for_any_scene(subject):
     Clip the result to 0 ... 1. Before you divide by a maximum, a range or a mean, check that it is
     not 0.
     """
-    laws.stays_in_range(asked(subject))
+    laws.stays_in_range(get_answer(subject))
 
 
 @points(1, needs=SHOWN)
@@ -133,7 +130,7 @@ def test_the_same_image_gives_the_same_result(subject):
 
     The same image must give the same result.
     """
-    laws.answers_the_same_twice(asked(subject))
+    laws.answers_the_same_twice(get_answer(subject))
 
 
 @points(3, needs=OPERATOR)
@@ -144,10 +141,12 @@ def test_one_hot_pixel_does_not_darken_the_image(subject, rng):
 
     Leave out the brightest 0.01 % of the pixels. In this image, these are 5.
     """
-    tonemap = asked(subject)
+    tonemap = get_answer(subject)
     L = laws.scene((200, 256))
-    for one in (L, L**0.2):
-        medians = [float(np.median(tonemap(picture))) for picture in (one, laws.hot_pixel(one))]
+    for luminance in (L, L**0.2):
+        medians = [
+            float(np.median(tonemap(picture))) for picture in (luminance, laws.hot_pixel(luminance))
+        ]
         same(medians[1], medians[0], 0.02, what="the median of Ld with a hot pixel")
 
 
@@ -159,7 +158,7 @@ def test_bright_regions_stay_bright(subject):
 
     Look for a wrong sign, or for a scale that should be its inverse.
     """
-    laws.keeps_the_light_the_right_way_up(asked(subject))
+    laws.keeps_the_light_the_right_way_up(get_answer(subject))
 
 
 @points(2, needs=OPERATOR)
@@ -170,4 +169,4 @@ def test_the_unit_of_luminance_cancels(subject):
 
     Scale by a statistic of the image itself: the log average, the median, or a percentile.
     """
-    laws.exposure(asked(subject))
+    laws.exposure(get_answer(subject))
