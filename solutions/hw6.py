@@ -27,7 +27,7 @@
 # | $x$, $h$, $y$ | object, shutter, photo of the moving object | (n,), (m,), (n + m - 1,) |
 # | $H$, $\mathrm{sd}$ | principal components of response curves, and the spread along each | (K, n), (K,) |
 # | $L$, $L_{wa}$, $L_d$; $b$ | luminance, its log average, display luminance; bias | any shape |
-# | $F_z$, $D_z$; $A_z$ | Fourier transform of tile z of a burst, its difference from the reference; shrinkage | (n, n) |
+# | $F_z$, $D_z$; $A_z$ | Fourier transform of tile z, difference from the reference; shrinkage | (n, n) |
 # | $V$, $Q$ | powers of the brightness; quadratic form of the error | (l, d + 1), (d + 1, d + 1) |
 #
 # Under each task there is a cell `check("...")`. It shows which checks pass and draws what

@@ -87,7 +87,7 @@ pictures.picture(
 
 # %%
 assembly = pipeline.assemble(bracket)
-print("\n".join(assembly.doubts) or "no doubts")
+print("\n".join(assembly.warnings) or "no warnings")
 pictures.radiance(assembly.E, alt="The radiance map in false color")
 
 # %% [markdown]

@@ -8,13 +8,13 @@ import pytest
 from benchmarks.verdicts import bands, borders, claims, machines
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.diagnostics.doubts import SENTENCES
+from hdrlab.diagnostics.warning_texts import SENTENCES
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.deghosting import ghosts
 
 
-def assembly(*doubts, notes=()):
-    return Assembly(stage="compare", bracket=None, offsets=None, doubts=doubts, notes=notes)
+def assembly(*warnings, notes=()):
+    return Assembly(stage="compare", bracket=None, offsets=None, warnings=warnings, notes=notes)
 
 
 def test_two_verdicts_contradict_each_other_only_if_they_share_no_cause():
@@ -79,7 +79,7 @@ def test_the_verdict_and_the_map_are_the_same_in_other_memory_layouts(layout):
     images[2] = warm
     expected = pipeline.assemble(replace(taken, images=images))
     found = pipeline.assemble(replace(taken, images=machines.lay_out(images, layout)))
-    assert expected.doubts
-    assert found.doubts == expected.doubts
+    assert expected.warnings
+    assert found.warnings == expected.warnings
     assert found.notes == expected.notes
     assert np.allclose(found.E, expected.E, rtol=1e-5)

@@ -34,7 +34,7 @@ def measure_case(name: str, kind: str, i: int) -> tuple[float, bool]:
 
 
 def answers(name: str, kind: str, count: int = COUNT) -> tuple[ArrayLike, ArrayLike]:
-    """Return errors (count,) and doubts (count,)."""
+    """Return errors (count,) and warnings (count,)."""
     try:
         measure_case(name, kind, 0)
     except peers.Missing as reason:

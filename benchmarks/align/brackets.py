@@ -135,7 +135,7 @@ def misregistration(bracket: HandheldBracket, homographies: F64) -> float:
 def align_with_hdrlab(taken: Bracket, *, method: str) -> Answer:
     """Align a bracket with a method of hdrlab, as `assemble` does."""
     state = registration.align_bracket(taken, method)
-    return Answer(homographies=state.homographies, has_warning=bool(state.doubts))
+    return Answer(homographies=state.homographies, has_warning=bool(state.warnings))
 
 
 def align_pairs(taken: Bracket, *, way: who.Way) -> Answer:

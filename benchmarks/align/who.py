@@ -1,4 +1,4 @@
-"""Who registers a pair: hdrlab in four ways, and its peers. Each tells a move, and whether it doubts it.
+"""Who registers a pair: hdrlab in four ways, and its peers. Each tells a move, and whether it warnings it.
 
 images  (2, H, W, 3) uint8: the darker photograph, which moves, and the brighter
 times   (2,) s

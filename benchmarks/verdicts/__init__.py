@@ -1,6 +1,6 @@
 """What `assemble` says of simulated brackets: false alarms on sound ones, misses on those with an ill.
 
-warned   a doubt is said, or that something moved, or the bracket is refused
+warned   hdrlab warns, or says that something moved, or the bracket is refused
 cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it),
          each the mean of 4 x 4 pixels, once one is laid on the other, since a map is as good where
          the camera turned. Pixel by pixel, turning all frames alike, which is no ill, would cost
@@ -54,9 +54,9 @@ BORDER, SIDE = 16, 4
 
 
 class Verdict(NamedTuple):
-    """What was said of a bracket, its doubts in words, and what its ill costs in the map, stops."""
+    """What was said of a bracket, its warnings in words, and what its ill costs in the map, stops."""
 
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
     cost: float
 
 
@@ -67,7 +67,7 @@ def assembled(taken: Bracket) -> tuple[Array | None, tuple[str, ...]]:
     except ValueError as reason:
         return None, (f"refused: {reason}",)
     return luminance(found.E), (
-        *found.doubts,
+        *found.warnings,
         *(note for note in found.notes if "something moved" in note),
     )
 
@@ -105,13 +105,13 @@ def judge(i: int, folder: Path, name: str, seed: int = 0) -> Verdict:
     if name in brackets.SOUND:
         return Verdict(assembled(brackets.shoot(plan))[1], 0.0)
     ill = ills.ILLS[name]
-    E, doubts = assembled(brackets.shoot(plan, ill))
+    E, warnings = assembled(brackets.shoot(plan, ill))
     sound = assembled(
         brackets.shoot(plan, ill, at_rest=True) if ill.moves else brackets.shoot(plan)
     )[0]
     if E is None:
-        return Verdict(doubts, np.inf)
-    return Verdict(doubts, 0.0 if sound is None else measure_cost(E, sound))
+        return Verdict(warnings, np.inf)
+    return Verdict(warnings, 0.0 if sound is None else measure_cost(E, sound))
 
 
 def sound(folder: Path, *, count: int = SOUND, seed: int = 0) -> Mapping[str, ArrayLike]:
@@ -120,7 +120,7 @@ def sound(folder: Path, *, count: int = SOUND, seed: int = 0) -> Mapping[str, Ar
     alarms = []
     for name in brackets.SOUND:
         said = [
-            one.doubts
+            one.warnings
             for one in along(
                 partial(judge, folder=folder, name=name, seed=seed), range(count), name
             )
@@ -138,7 +138,7 @@ def told(folder: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLi
     each = along(partial(judge, folder=folder, name=name), range(count), name)
     cost, warned = (
         np.array([one.cost for one in each]),
-        np.array([bool(one.doubts) for one in each]),
+        np.array([bool(one.warnings) for one in each]),
     )
     costly = cost > COSTLY
     return {

@@ -15,7 +15,7 @@ from hdrlab.diagnostics import (
     registration,
     tones,
 )
-from hdrlab.diagnostics.doubts import MARGIN
+from hdrlab.diagnostics.warning_texts import MARGIN
 from hdrlab.pipeline import checks, dark_pixels, recovery, rigid_motion
 
 

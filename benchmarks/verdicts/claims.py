@@ -36,7 +36,7 @@ PHRASES = {
 
 def blamed_causes(assembly: Assembly) -> frozenset[str]:
     """Return the causes that the warnings and notes of an assembly name."""
-    sentences = (*assembly.doubts, *assembly.notes)
+    sentences = (*assembly.warnings, *assembly.notes)
     return frozenset(
         cause for sentence in sentences for phrase, cause in PHRASES.items() if phrase in sentence
     )

@@ -101,7 +101,7 @@ def main(machine: str, folder: str) -> None:
         except HdrlabError as error:
             found[name] = {"sentences": [str(error)], "causes": []}
             continue
-        sentences = [*assembly.doubts, *assembly.notes]
+        sentences = [*assembly.warnings, *assembly.notes]
         found[name] = {"sentences": sentences, "causes": sorted(blamed_causes(assembly))}
     print(json.dumps(found))
 

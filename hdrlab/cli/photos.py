@@ -24,7 +24,7 @@ ALIGN_METHODS = ["auto", *catalogue.names("align"), "none"]
 CALIBRATION_METHODS = [name for name in catalogue.names("response") if name != "linear"]
 
 EXIT_DOUBTFUL_MAP = 3
-MAX_DOUBT_LINES = 3
+MAX_WARNING_LINES = 3
 
 
 @click.command(cls=common.Command)
@@ -230,7 +230,7 @@ def assemble(
     if meter_reading:
         assembly = pipeline.calibrate(assembly, *meter_reading)
     assembly = _print_remarks(assembly, remarks, has_picture=outputs.has_picture)
-    common.echo_warnings(assembly.doubts if verbose else _shorten(assembly.doubts))
+    common.echo_warnings(assembly.warnings if verbose else _shorten(assembly.warnings))
     recipe: dict[str, object] = {
         "response": response,
         "align": align,
@@ -242,7 +242,7 @@ def assemble(
     }
     descriptions = _write_outputs(outputs, assembly, operator, recipe, remarks)
     click.echo(wording.summarize_assembly(assembly, descriptions))
-    if strict and assembly.doubts:
+    if strict and assembly.warnings:
         ctx.exit(EXIT_DOUBTFUL_MAP)
 
 
@@ -337,7 +337,7 @@ def _write_outputs(
     from hdrlab.pipeline import pictures
     from hdrlab.show.pages import wording
 
-    comments = [f"doubt: {doubt}" for doubt in assembly.doubts]
+    comments = [f"warning: {warning}" for warning in assembly.warnings]
     # the map is written while the image is made, and also if making the image fails
     with ThreadPoolExecutor(1) as executor:
         writing = executor.submit(
@@ -519,12 +519,12 @@ def _describe_evidence(path: Path) -> str:
     return f"{path} ({megabytes:.2g} MB)" if megabytes < 10 else f"{path} ({megabytes:.0f} MB)"
 
 
-def _shorten(doubts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return at most MAX_DOUBT_LINES doubts. The last line counts those that are left out."""
-    if len(doubts) <= MAX_DOUBT_LINES:
-        return doubts
-    shown = doubts[: MAX_DOUBT_LINES - 1]
-    hidden = len(doubts) - len(shown)
+def _shorten(warnings: tuple[str, ...]) -> tuple[str, ...]:
+    """Return at most MAX_WARNING_LINES warnings. The last line counts those that are left out."""
+    if len(warnings) <= MAX_WARNING_LINES:
+        return warnings
+    shown = warnings[: MAX_WARNING_LINES - 1]
+    hidden = len(warnings) - len(shown)
     return *shown, f"{hidden} more warnings; pass --verbose to see all of them"
 
 
@@ -595,7 +595,7 @@ def calibrate(
         times_mode = "estimate"
     steps = pipeline.assemble_steps(bracket, align=align, response=response, times=times_mode)
     aligned = next(state for state in steps if state.stage == last_stage)
-    common.echo_notes([*aligned.notes, *aligned.details, *aligned.doubts])
+    common.echo_notes([*aligned.notes, *aligned.details, *aligned.warnings])
 
     # this method keeps only a plausible response
     recover = recovery.find_validated_method(response)
@@ -603,7 +603,7 @@ def calibrate(
     assembly = pipeline.assemble(
         aligned.bracket, align="none", response=lambda *_, **__: g, times="stated"
     )
-    common.echo_warnings(assembly.doubts)
+    common.echo_warnings(assembly.warnings)
     click.echo(f"{response}, from {len(assembly.bracket.times)} photos")
     click.echo(calibration.summary(assembly.g, assembly.medians, assembly.bracket.names))
     for path in out:

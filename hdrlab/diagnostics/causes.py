@@ -33,8 +33,8 @@ from hdrlab.diagnostics.contradictions import (
     Contradictions,
     TimesSource,
 )
-from hdrlab.diagnostics.doubts import MARGIN, warning_text
 from hdrlab.diagnostics.motion import MAX_FLICKER_FRACTION, MIN_BAND_STOPS, MIN_MOVING_FRACTION
+from hdrlab.diagnostics.warning_texts import MARGIN, warning_text
 
 # stops of spread; brackets with true times stay below 0.2, those of scanned film included
 MAX_EXPLAINED_SPREAD = 0.25

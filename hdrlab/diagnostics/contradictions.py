@@ -34,8 +34,8 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, to_256
 from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.doubts import MARGIN
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
+from hdrlab.diagnostics.warning_texts import MARGIN
 
 # side of a part of the image, in patches
 PATCHES_PER_TILE_SIDE = 12

@@ -17,7 +17,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, as_response, as_stack
 from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.warning_texts import warning_text
 
 # stops; a time that is off by more is worth a warning
 MAX_ROUGH_STOPS = 0.5
@@ -221,7 +221,7 @@ def exceeds_rounding(found: Estimate) -> bool:
     return found.accepted and float(np.abs(found.stops).max()) > MAX_ROUNDING_STOPS
 
 
-def doubts(found: Estimate) -> tuple[str, ...]:
+def find_warnings(found: Estimate) -> tuple[str, ...]:
     """Return warnings about estimated times: one sentence, or none."""
     if not found.accepted:
         return ()

@@ -24,7 +24,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import CalibrationError, InputError
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Mask, as_mask, as_stack, levels
 from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.doubts import MARGIN
+from hdrlab.diagnostics.warning_texts import MARGIN
 
 # stops in a typical patch, by which photos contradict each other
 MIN_CONTRARY_STOPS = 0.3

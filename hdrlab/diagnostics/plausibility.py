@@ -30,7 +30,7 @@ from hdrlab.core.arrays import (
     as_stack,
     as_times,
 )
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import CalibrationError
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8

@@ -25,7 +25,7 @@ import numpy as np
 from hdrlab.align import homography, light, mtb
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import blur, warp
-from hdrlab.diagnostics.doubts import MARGIN
+from hdrlab.diagnostics.warning_texts import MARGIN
 
 # pixels of the overview; distances at which other offsets are compared
 NEAR_PIXELS = 2

@@ -31,8 +31,8 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, Indices, Mask, as_mask, as_radiance
 from hdrlab.core.bracket import short_to_long
-from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.motion import BLOCK_SIDE, minimum_around, sum_blocks
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.radiance.merge import CLIPPING_LEVEL, as_tables
 

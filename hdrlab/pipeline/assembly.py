@@ -48,7 +48,7 @@ class Assembly:
         What users must know about the map although nothing is wrong, as sentences.
     details : tuple of str
         How hdrlab made the map, as sentences. `assemble --verbose` and the report show them.
-    doubts : tuple of str
+    warnings : tuple of str
         Warnings, as sentences; an empty tuple means that no problem was found.
     is_misaligned : bool
         Whether photos are clearly not aligned, so that contradictions between them are no news.
@@ -77,7 +77,7 @@ class Assembly:
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     details: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     is_misaligned: bool = False
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
@@ -149,9 +149,9 @@ class Assembly:
         """Return a copy with one more detail."""
         return replace(self, details=(*self.details, detail))
 
-    def with_doubt(self, doubt: str) -> "Assembly":
+    def with_warning(self, warning: str) -> "Assembly":
         """Return a copy with one more warning."""
-        return replace(self, doubts=(*self.doubts, doubt))
+        return replace(self, warnings=(*self.warnings, warning))
 
 
 def select_photos(state: Assembly, order: NDArray[np.intp]) -> Assembly:

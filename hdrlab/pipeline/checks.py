@@ -11,8 +11,8 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import Task, run_in_background
 from hdrlab.diagnostics import causes, consistency, contradictions, tones
 from hdrlab.diagnostics.contradictions import Contradictions, TimesSource
-from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.tones import PartError
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.pipeline.options import Options
 
@@ -69,22 +69,22 @@ def check_map(
     spread = state.spread
     if np.isnan(spread):
         text = warning_text("alone")
-        return replace(state.with_doubt(text), fallback=text)
+        return replace(state.with_warning(text), fallback=text)
     if is_worthless(medians) and not state.fallback:
         reason = f"the photos contradict each other by {spread:.2f} stops"
         state = replace(state, fallback=reason)
     dark_text = "" if state.fallback else tones.warn_of_dark_parts(part_errors, merge=options.merge)
     if dark_text:
-        state = state.with_doubt(dark_text)
+        state = state.with_warning(dark_text)
     text = _describe_problem(state, found, moving_fraction, band_stops, options)
     if text:
-        return state.with_doubt(text)
+        return state.with_warning(text)
     names = state.bracket.names
     if not state.fallback and not dark_text:
         alternatives = _find_alternatives(state, options)
         text = tones.warn_of_parts(part_errors, names, alternatives=alternatives)
         if text:
-            return state.with_doubt(text)
+            return state.with_warning(text)
     unchecked = [name for name, stops in zip(names, found.stops, strict=True) if np.isnan(stops)]
     if unchecked:
         return state.with_detail(

@@ -7,7 +7,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike
 from hdrlab.diagnostics import outlying_frames
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.pipeline import dark_pixels
 from hdrlab.pipeline.assembly import Assembly, select_photos
 from hdrlab.radiance import flare
@@ -47,7 +47,7 @@ def drop_outlying_frames(
         rival_names = " or ".join(bracket.names[j] for j in rivals)
         text += warning_text("rivals", frames=rival_names)
     is_warning = has_rivals or len(dropped) > 1
-    state = state.with_doubt(text) if is_warning else state.with_note(text)
+    state = state.with_warning(text) if is_warning else state.with_note(text)
     kept = np.delete(np.arange(len(bracket.times)), dropped)
     return select_photos(state, kept)
 
@@ -75,7 +75,7 @@ def _correct_time_for_highlights(
         return None
     state = replace(state, bracket=replace(bracket, times=times))
     text = warning_text("highlights", frame=bracket.names[frame], stops=-stops)
-    return state.with_doubt(text)
+    return state.with_warning(text)
 
 
 def remove_ghosts(
@@ -131,7 +131,7 @@ def remove_ghosts(
         text = warning_text("widespread", percent=percent)
         if mode != "reference":
             text += warning_text("widespread_advice")
-        state = state.with_doubt(text)
+        state = state.with_warning(text)
     text = ghosts.note(result, bracket.names)
     return state.with_note(text) if len(result.references) else state.with_detail(text)
 

@@ -23,8 +23,8 @@ from hdrlab.core import metrics, sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics import consistency, plausibility
-from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.frame_choice import choose_spread_frames
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import CalibrationError, InputError
 from hdrlab.fast import debevec, merge, robertson
 from hdrlab.pipeline import catalogue, tied_curves
@@ -65,7 +65,7 @@ class FoundResponse:
     """The response g of a bracket, warnings, and why no map that it makes is usable, or ""."""
 
     g: F64
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     fallback: str = ""
 
 
@@ -334,7 +334,7 @@ def find_response(response: Method, choice: ResponseChoice, bracket: Bracket) ->
     except InputError as error:
         if callable(response):
             raise
-        doubt = warning_text("no_response", error=error)
+        warning = warning_text("no_response", error=error)
     try:
         g = space.recover(images, times, valid=valid)
     except InputError as error:
@@ -342,5 +342,5 @@ def find_response(response: Method, choice: ResponseChoice, bracket: Bracket) ->
     try:
         plausibility.validate_response(g, images, times, valid=valid)
     except CalibrationError:
-        return FoundResponse(g=g, doubts=(doubt,), fallback=doubt)
-    return FoundResponse(g=g, doubts=(doubt,))
+        return FoundResponse(g=g, warnings=(warning,), fallback=warning)
+    return FoundResponse(g=g, warnings=(warning,))

@@ -11,8 +11,8 @@ from hdrlab.align.shift import as_offsets, crop, shift
 from hdrlab.core.arrays import F64, Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
-from hdrlab.diagnostics.doubts import warning_text
 from hdrlab.diagnostics.registration import Validation
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.pipeline import alignment, recovery
 from hdrlab.pipeline.assembly import Assembly, Method
@@ -57,7 +57,7 @@ def align_bracket(
         advice = ADVICE
     else:
         advice = ADVICE_ABOUT_GHOSTS + ADVICE
-    doubts, notes = describe_pairs(found.pairs, bracket.names, advice)
+    warnings, notes = describe_pairs(found.pairs, bracket.names, advice)
     is_misaligned = any(pair.is_misaligned and not pair.is_borderline for pair in found.pairs)
     aligned = apply_alignment(bracket, found.transforms, g, in_place=in_place)
     homographies = warp.as_homographies(found.transforms)
@@ -70,7 +70,7 @@ def align_bracket(
         offsets=np.rint(shifts).astype(np.int64)[:, ::-1],
         homographies=homographies,
         details=found.notes + notes,
-        doubts=doubts,
+        warnings=warnings,
         is_misaligned=is_misaligned,
     )
 
@@ -89,13 +89,13 @@ def describe_pairs(
         return (warning_text("borderline", pair=pair_names, advice=advice),), ()
     misaligned = [pair for pair in pairs if pair.apart and not pair.is_borderline]
     if misaligned:
-        doubt = warning_text(
+        warning = warning_text(
             "misaligned",
             pair=_name_pairs(misaligned, names),
             reason=misaligned[0].failure,
             advice=advice,
         )
-        return (doubt,), ()
+        return (warning,), ()
     unconfirmed = [pair for pair in doubtful if not pair.is_borderline]
     if unconfirmed:
         names_of_pairs = _name_pairs(unconfirmed, names)

@@ -30,7 +30,7 @@ from hdrlab.align import cerman, homography
 from hdrlab.align.light import BRIGHT, DARK, SMOOTHING_SIGMA
 from hdrlab.core.arrays import F32, F64, Array
 from hdrlab.core.filters import warp
-from hdrlab.diagnostics.doubts import MARGIN
+from hdrlab.diagnostics.warning_texts import MARGIN
 
 # The motion is measured at the largest level of the pyramid that is not larger.
 MAX_PIXELS = 2**18

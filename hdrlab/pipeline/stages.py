@@ -19,7 +19,7 @@ from hdrlab.core.threads import Task, run_in_background
 from hdrlab.diagnostics import causes, consistency, motion, tones
 from hdrlab.diagnostics.causes import MAX_EXPLAINED_SPREAD
 from hdrlab.diagnostics.contradictions import Contradictions
-from hdrlab.diagnostics.doubts import warning_text
+from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import InputError
 from hdrlab.fast.merge import Expendable
 from hdrlab.pipeline import checks, corrections, dark_pixels, recovery, registration, timing
@@ -108,7 +108,7 @@ def assemble(
     Returns
     -------
     Assembly
-        Check its `doubts` (warnings) before you use its radiance map `E`.
+        Check its `warnings` (warnings) before you use its radiance map `E`.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def assemble(
     >>> from hdrlab import scenes
     >>> photographs = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
     >>> assembly = assemble(photographs)
-    >>> assembly.E.shape, assembly.doubts
+    >>> assembly.E.shape, assembly.warnings
     ((96, 144, 3), ())
     """
     if method is not None:
@@ -188,7 +188,9 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
 
     # Misaligned photos contradict each other, so contradictions are no news from here on.
     is_misaligned = state.is_misaligned
-    state = replace(state, doubts=(*completed.bracket.damaged, *completed.doubts, *state.doubts))
+    state = replace(
+        state, warnings=(*completed.bracket.damaged, *completed.warnings, *state.warnings)
+    )
     checked_bracket = state.bracket
     contradictions_task = checks.start_finding_contradictions(checked_bracket)
     choice = recovery.choose_response(options.response, state.bracket)
@@ -250,7 +252,7 @@ def _run_stages(bracket: Bracket, options: Options) -> Iterator[Assembly]:
         state, measurements, options, is_misaligned=is_misaligned, removes_ghosts=removes_ghosts
     )
     if is_misaligned:
-        checked = replace(checked, doubts=state.doubts)
+        checked = replace(checked, warnings=state.warnings)
     yield checked
 
 
@@ -348,7 +350,7 @@ def _refine_times(
         is_aligned=not is_misaligned or options.times == "estimate",
     )
     is_changed = not np.array_equal(refined.bracket.times, state.bracket.times)
-    has_warning = refined.doubts != state.doubts
+    has_warning = refined.warnings != state.warnings
     # Notes on times that stay are news only to those who asked for an estimate.
     if is_changed or is_requested or has_warning:
         return refined
@@ -363,7 +365,7 @@ def _find_response(state: Assembly, options: Options, choice: recovery.ResponseC
         stage="response",
         g=response.g,
         details=(*state.details, *choice.notes),
-        doubts=(*state.doubts, *response.doubts),
+        warnings=(*state.warnings, *response.warnings),
         fallback=response.fallback,
     )
 
@@ -448,7 +450,7 @@ def _merge(state: Assembly, plan: _MergePlan, *, frees_photos: bool) -> _MergedS
     state = replace(state, E=E)
     black_fraction = dark_pixels.measure_black_fraction(certainty)
     if black_fraction >= dark_pixels.MIN_BLACK_FRACTION:
-        state = state.with_doubt(warning_text("black", percent=100 * black_fraction))
+        state = state.with_warning(warning_text("black", percent=100 * black_fraction))
     return _MergedState(state=state, certainty=certainty, neutral=neutral)
 
 

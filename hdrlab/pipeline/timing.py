@@ -15,8 +15,8 @@ from hdrlab.align import light, mtb
 from hdrlab.core import arrays, colour
 from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.diagnostics import exposure_times, plausibility
-from hdrlab.diagnostics.doubts import MARGIN, warning_text
 from hdrlab.diagnostics.exposure_times import Estimate
+from hdrlab.diagnostics.warning_texts import MARGIN, warning_text
 from hdrlab.errors import InputError
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, select_photos
@@ -102,7 +102,7 @@ class CompletedTimes:
     bracket: Bracket
     are_relative: bool = False
     notes: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
@@ -141,10 +141,10 @@ def complete_times(bracket: Bracket, times: str) -> CompletedTimes:
     if times == "estimate":
         return CompletedTimes(bracket=relative, are_relative=True, notes=(sentence,))
     if all_equal:
-        doubt = warning_text("no_times", relative=sentence)
+        warning = warning_text("no_times", relative=sentence)
     else:
-        doubt = warning_text("contradictory_times", pair=pair, relative=sentence)
-    return CompletedTimes(bracket=relative, are_relative=True, doubts=(doubt,))
+        warning = warning_text("contradictory_times", pair=pair, relative=sentence)
+    return CompletedTimes(bracket=relative, are_relative=True, warnings=(warning,))
 
 
 def _find_falling(bracket: Bracket) -> arrays.Indices:
@@ -199,7 +199,7 @@ def refine_times(
     """
     corrected = correct_times(state.bracket, response, stated_spread)
     # A warning about relative times has been given, and there are no stated ones to differ from.
-    doubts = exposure_times.doubts(corrected.estimate) if has_stated_times else ()
+    warnings = exposure_times.find_warnings(corrected.estimate) if has_stated_times else ()
     relative: CorrectedTimes | None = None
     if corrected.spread > MIN_WORTHLESS_STOPS / MARGIN:
         rising = select_photos(state, np.array(mtb.by_brightness(state.bracket.images)))
@@ -217,21 +217,21 @@ def refine_times(
             state = replace(rising, bracket=unscaled)
             corrected = relative
             has_stated_times = False
-            doubts = (_describe_replaced_times(stated_spread, relative_times),)
+            warnings = (_describe_replaced_times(stated_spread, relative_times),)
         elif (
             has_stated_times
             and np.isfinite(corrected.spread)
             and relative.spread < MARGIN * max_spread
         ):
             text = warning_text("maybe_replaced", stops=corrected.spread, relative=relative.spread)
-            doubts = (*doubts, text)
+            warnings = (*warnings, text)
     if not is_aligned and corrected is not relative:
         return state
     estimate = corrected.estimate
     state = replace(
         state,
         bracket=replace(state.bracket, times=estimate.times),
-        doubts=(*state.doubts, *doubts),
+        warnings=(*state.warnings, *warnings),
     )
     text = exposure_times.note(estimate, state.bracket.names)
     is_news = has_stated_times and exposure_times.exceeds_rounding(estimate)

@@ -272,7 +272,7 @@ def test_photos_of_two_scenes_give_a_warning(room):
             bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman"
         )
     )
-    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in assembly.doubts)
+    assert any("b.jpg" in warning and "leave one out" in warning for warning in assembly.warnings)
     assert assembly.homographies.shape == (2, 3, 3) and MIN_CONFIDENCE == 0.3
 
 

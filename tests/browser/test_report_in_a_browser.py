@@ -23,7 +23,7 @@ def report(tmp_path_factory):
         bracket([ramp, 2 * ramp], [1 / 8000, 1 / 4000], names), align="none", response="linear"
     )
     assembly = replace(
-        assembly, doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",)
+        assembly, warnings=(f"{names[1]} may be wrong",), notes=(f"{names[0]} is dark",)
     )
     return write_report(tmp_path_factory.mktemp("report"), assembly, pipeline.develop(assembly.E))
 

@@ -251,7 +251,7 @@ def test_doubtful_map_is_written_with_warnings_and_fails_only_with_strict(
         assert any("frame2.png" in line for line in about_times)
         assert "exposure times" in (page / "report.html").read_text(encoding="utf8")
         about = hdrlab("info", out, capsys=capsys)[1]
-        assert ("doubt: " in about) == (out.suffix != ".pfm")
+        assert ("warning: " in about) == (out.suffix != ".pfm")
         assert radiance.read_radiance(out).any()
     assert hdrlab(*common, tmp_path / "x.hdr", "--strict") == 3
     assert cv2.imread(str(tmp_path / "x.hdr"), cv2.IMREAD_UNCHANGED).any()
@@ -302,13 +302,15 @@ def test_uncertainty_rejects_other_formats_than_exr_before_the_work(photographs,
     assert not (tmp_path / "x.pfm").exists()
 
 
-def test_map_without_doubts_has_none_in_its_header_and_passes_strict(photographs, tmp_path, capsys):
+def test_map_without_warnings_has_none_in_its_header_and_passes_strict(
+    photographs, tmp_path, capsys
+):
     folder, times = photographs
     code, _, errors = hdrlab(
         "assemble", folder, "-o", tmp_path / "x.hdr", "--times", times, "--strict", capsys=capsys
     )
     assert code == 0 and "warning" not in errors
-    assert b"doubt" not in (tmp_path / "x.hdr").read_bytes()[:500]
+    assert b"warning" not in (tmp_path / "x.hdr").read_bytes()[:500]
 
 
 @pytest.mark.papers

@@ -85,7 +85,7 @@ def test_the_map_is_that_of_the_command_and_its_file_repeats_the_warnings(own, f
     radiance.write_radiance(expected_path, expected.E)
     written = own.folder / own_photos.MAP_NAME
     assert np.array_equal(radiance.read_radiance(written), radiance.read_radiance(expected_path))
-    assert answer["warnings"] == list(expected.doubts)
+    assert answer["warnings"] == list(expected.warnings)
     assert f"the {COUNT} photos agree" in answer["summary"]
     unit = radiance.read_luminance_of_unit(written)
     assert unit == pytest.approx(expected.bracket.luminance_of_unit)

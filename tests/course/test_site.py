@@ -24,7 +24,7 @@ from support.missing_environment import ENVIRONMENTS, turn_clock_back
 
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, pages as build, reference
-from hdrlab.diagnostics import causes, doubts
+from hdrlab.diagnostics import causes, warning_texts
 from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture
 from hdrlab.io.web import decode_picture
@@ -606,11 +606,11 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
                 "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts)
                 + "\n"
             )
-    sentences = doubts.SENTENCES.values()
+    sentences = warning_texts.SENTENCES.values()
     printed += "\n".join(re.sub(r"\{.*?\}", "%", sentence) for sentence in sentences)
     for pair in combinations(causes.CAUSES, 2):
-        named = " or ".join(doubts.SENTENCES[f"{cause}_cause"] for cause in pair)
-        printed += "\n" + doubts.warning_text("either", causes=named, evidence="", advice="")
+        named = " or ".join(warning_texts.SENTENCES[f"{cause}_cause"] for cause in pair)
+        printed += "\n" + warning_texts.warning_text("either", causes=named, evidence="", advice="")
     quotes = quotes_of_the_page_on_warnings()[: -len(REFUSED)]
     assert len(quotes) >= 12
     for quote in quotes:
@@ -640,10 +640,10 @@ UNEXPLAINED = {
 }
 
 
-@pytest.mark.parametrize("name", sorted(set(doubts.SENTENCES) - UNEXPLAINED))
+@pytest.mark.parametrize("name", sorted(set(warning_texts.SENTENCES) - UNEXPLAINED))
 def test_the_page_on_warnings_quotes_each_warning(name):
     quotes = " ".join(quotes_of_the_page_on_warnings())
-    parts = [part.strip(" :;,(") for part in re.split(r"\{.*?\}", doubts.SENTENCES[name])]
+    parts = [part.strip(" :;,(") for part in re.split(r"\{.*?\}", warning_texts.SENTENCES[name])]
     opening = next(part for part in parts if len(part) > 12)
     assert opening[:40] in quotes
 
@@ -673,7 +673,7 @@ def test_the_page_quotes_the_messages_about_photos_word_for_word(what, tmp_path)
 
 def test_the_page_quotes_the_warning_about_the_times_of_the_packaged_photos():
     taken = replace(scenes.photographs((320, 240)), times=1 / np.array([1000, 120, 60, 15, 8, 4]))
-    warning = pipeline.assemble(taken).doubts[0].partition(", but")[0]
+    warning = pipeline.assemble(taken).warnings[0].partition(", but")[0]
     quotes = quotes_of_the_page_on_warnings()
     (quote,) = [
         quote for quote in quotes if quote.startswith("the stated times") and "not used" in quote

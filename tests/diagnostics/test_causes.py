@@ -8,7 +8,7 @@ import pytest
 from hdrlab.diagnostics import causes
 from hdrlab.diagnostics.causes import CAUSES, Evidence, find_causes
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions
-from hdrlab.diagnostics.doubts import SENTENCES, warning_text
+from hdrlab.diagnostics.warning_texts import SENTENCES, warning_text
 
 STATISTICS = tuple(field.name for field in fields(Evidence))
 # on both sides of every limit of `causes.decide`

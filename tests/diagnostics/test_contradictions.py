@@ -104,7 +104,7 @@ def test_a_response_that_the_photos_contradict_is_a_calibration_error(taken):
 )
 def test_few_flat_patches_accuse_no_lens_and_no_white_balance(sound, number, tmp_path):
     plan = brackets.plan(tmp_path, number, sound=sound, seed=2)
-    assert pipeline.assemble(brackets.shoot(plan)).doubts == ()
+    assert pipeline.assemble(brackets.shoot(plan)).warnings == ()
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def test_map_of_many_photos_is_that_of_some():
     many = shoot(80)
     assembly = assemble(many, align="none")
     some = assemble(shoot(8), align="none")
-    assert not assembly.doubts
+    assert not assembly.warnings
     ratio = np.log2(assembly.E / some.E)
     assert np.quantile(np.abs(ratio - np.median(ratio)), 0.9) < 0.05
 
@@ -77,7 +77,7 @@ def measure_peak_bytes(taken):
     assembly = assemble(taken, align="none")
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert not assembly.doubts
+    assert not assembly.warnings
     return peak
 
 

@@ -78,19 +78,21 @@ def test_moving_leaves_and_water_are_found_although_the_spread_is_small(ill, tmp
     taken = brackets.shoot(brackets.plan(tmp_path, 3), ills.ILLS[ill])
     found = pipeline.assemble(taken, align="none")
     assert found.spread < 0.1
-    assert found.moving is not None or any("--ghosts regions" in doubt for doubt in found.doubts)
+    assert found.moving is not None or any(
+        "--ghosts regions" in warning for warning in found.warnings
+    )
 
 
 def test_a_still_scene_after_sharpening_and_jpeg_is_not_motion(tmp_path):
     found = pipeline.assemble(brackets.shoot(brackets.plan(tmp_path, 3)), align="none")
-    assert found.moving is None and found.doubts == ()
+    assert found.moving is None and found.warnings == ()
 
 
 def test_bright_panes_beside_dark_walls_are_not_motion(tmp_path):
     plan = brackets.plan(tmp_path, 12, sound="plain")
     assert plan.scene == "chapel"
     found = pipeline.assemble(brackets.shoot(plan), align="none")
-    assert found.moving is None and found.doubts == ()
+    assert found.moving is None and found.warnings == ()
 
 
 def test_lamps_that_flicker_make_bands_across_the_rows_and_not_along_them():
@@ -117,8 +119,8 @@ def flickering(tmp_path_factory):
 
 def verdict(taken):
     """Return the only warning of a map, without its numbers."""
-    (doubt,) = pipeline.assemble(taken, align="none").doubts
-    return re.sub(r"\d", "", doubt)
+    (warning,) = pipeline.assemble(taken, align="none").warnings
+    return re.sub(r"\d", "", warning)
 
 
 @pytest.mark.papers

@@ -184,10 +184,10 @@ def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken,
 def test_correcting_one_of_three_times_gives_a_warning(taken):
     three = taken(3)
     found = pipeline.assemble(replace(three, times=three.times * [1, 1, 1.3]))
-    assert any("exposure times" in doubt for doubt in found.doubts)
-    assert pipeline.assemble(three).doubts == ()
+    assert any("exposure times" in warning for warning in found.warnings)
+    assert pipeline.assemble(three).warnings == ()
     rounded = exposure_times.Estimate(three.times, np.array([-0.03, 0.06, -0.03]), True, "")
-    assert exposure_times.doubts(rounded) == ()  # as cameras round 1/32 s to 1/30
+    assert exposure_times.find_warnings(rounded) == ()  # as cameras round 1/32 s to 1/30
 
 
 def test_a_wrong_time_is_reported_even_if_the_spread_is_small_but_not_if_it_is_tiny(taken):
@@ -496,7 +496,7 @@ def test_the_pipeline_estimates_times_between_alignment_and_response(taken):
     assert tuple(state.stage for state in states) == pipeline.STAGES
     assert states[-1].spread < 0.3 * pipeline.assemble(rough, align="none", times="stated").spread
     assert any("times estimated" in one and "frame 3 -0.1" in one for one in states[-1].notes)
-    assert states[-1].doubts == () and not np.array_equal(states[-1].bracket.times, rough.times)
+    assert states[-1].warnings == () and not np.array_equal(states[-1].bracket.times, rough.times)
 
 
 def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_warning(taken):
@@ -505,7 +505,9 @@ def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_warning(taken)
     assert any("left out" in one and wrong.names[2] in one for one in stated.notes)
     found = pipeline.assemble(wrong)
     assert (
-        found.spread < 0.03 and len(found.doubts) == 1 and "contrast of the map" in found.doubts[0]
+        found.spread < 0.03
+        and len(found.warnings) == 1
+        and "contrast of the map" in found.warnings[0]
     )
 
 
@@ -572,7 +574,7 @@ def test_real_photographs_agree_better_with_estimated_times_or_keep_those_stated
         taken = replace(taken, images=taken.images[:, ::2, ::2])
     align = "mtb" if name == "stlouis_arch" else "none"
     found = pipeline.assemble(taken, times="estimate", align=align)
-    assert found.spread <= stops and found.doubts == ()
+    assert found.spread <= stops and found.warnings == ()
     assert np.array_equal(found.bracket.times, taken.times) != changed
 
 

@@ -48,18 +48,18 @@ def test_black_floors_that_outvote_the_longest_photo_in_the_dark_bring_a_warning
     scanned = add_black_floor(shoot(room, stops=1.5))
     assembly = assemble(scanned, merge="log")
     assert assembly.spread < 0.25
-    assert any("darkest parts" in doubt for doubt in assembly.doubts)
+    assert any("darkest parts" in warning for warning in assembly.warnings)
 
 
 def test_the_default_merge_of_a_scan_with_a_black_floor_agrees_with_its_longest_photo(room):
-    assert assemble(add_black_floor(shoot(room, stops=1.5))).doubts == ()
+    assert assemble(add_black_floor(shoot(room, stops=1.5))).warnings == ()
 
 
 @pytest.mark.parametrize("photo", [3, LAST])
 def test_a_channel_that_is_wrong_in_one_photo_brings_a_warning(room, photo):
     assembly = assemble(shoot(room, changed_photo=photo, gain=np.array([1, 1, 0.6])))
     assert assembly.spread < 0.1
-    assert assembly.doubts
+    assert assembly.warnings
 
 
 def test_light_that_changed_in_a_quarter_of_the_longest_photo_brings_a_warning(room):
@@ -67,7 +67,7 @@ def test_light_that_changed_in_a_quarter_of_the_longest_photo_brings_a_warning(r
     gain[:60, :90] = 0.6
     assembly = assemble(shoot(room, changed_photo=LAST, gain=gain), ghosts="none")
     assert assembly.spread < 0.1
-    assert assembly.doubts
+    assert assembly.warnings
 
 
 @pytest.mark.parametrize("response", ["srgb", "film", "gamma"])
@@ -75,7 +75,7 @@ def test_light_that_changed_in_a_quarter_of_the_longest_photo_brings_a_warning(r
 def test_a_sound_bracket_with_noise_brings_no_warning(room, response, count):
     noisy = camera.Camera(response=response, full_well=3000, read_noise=8)
     taken = camera.shoot(room, camera.times_around(room, count), noisy, rng=2)
-    assert assemble(taken).doubts == ()
+    assert assemble(taken).warnings == ()
 
 
 def measure_parts(images, times, E, *, dtype=np.uint8, moving=None, valid=None):

@@ -59,7 +59,7 @@ def test_the_map_of_a_bracket_with_a_damaged_photo_has_a_warning_that_names_it(f
     damage(folder / "2.jpg", how)
     bracket, _ = read(folder, {f"{j}.jpg": TIMES[j - 1] for j in (1, 2, 3, 4)})
     assembly = pipeline.assemble(bracket)
-    assert any("2.jpg" in doubt for doubt in assembly.doubts)
+    assert any("2.jpg" in warning for warning in assembly.warnings)
 
 
 @pytest.mark.parametrize("how", [cut, zero_the_header])

@@ -30,9 +30,9 @@ def test_every_format_survives_a_round_trip(tmp_path, suffix):
 @pytest.mark.parametrize("unit", [0.012345, 1.0, 3e7])
 def test_luminance_of_a_unit_survives_a_round_trip(tmp_path, suffix, unit):
     path = tmp_path / f"x{suffix}"
-    write_radiance(path, E, comments=["doubt: a cloud came"], luminance_of_unit=unit)
+    write_radiance(path, E, comments=["warning: a cloud came"], luminance_of_unit=unit)
     assert read_luminance_of_unit(path) == pytest.approx(unit, rel=1e-5)
-    assert "doubt: a cloud came" in str(describe_file(path))
+    assert "warning: a cloud came" in str(describe_file(path))
     write_radiance(path, E, comments=["a cloud came"])
     assert read_luminance_of_unit(path) is None
 

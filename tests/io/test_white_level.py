@@ -107,5 +107,5 @@ def test_case_of_fewer_bits_keeps_its_times(bits):
     bracket = read_bracket(folder, folder / "times.txt", note=notes.append)
     assembly = assemble(bracket)
     assert any(str(2**bits - 1) in text for text in notes)
-    assert not assembly.doubts
+    assert not assembly.warnings
     np.testing.assert_allclose(assembly.bracket.times, [4.0**-k for k in (4, 3, 2, 1, 0)])

@@ -44,7 +44,7 @@ def test_nearly_black_or_white_frames_from_a_tripod_give_no_warning(texture, ali
     images = shoot(STILL, TIMES, texture=texture(), decades=3.0)
     assert np.mean(images[0] < 12) > 0.8 and np.mean(images[-1] > 243) > 0.8
     assembly = aligned(images, align)
-    assert not assembly.offsets.any() and assembly.doubts == ()
+    assert not assembly.offsets.any() and assembly.warnings == ()
     assert assembly.notes == ()
 
 
@@ -55,13 +55,13 @@ def test_photos_that_are_black_or_white_nearly_everywhere_give_no_warning():
     soft = gaussian_filter(taken.images.astype(np.float32), (0, 1, 1, 0))
     sharp = np.clip(np.rint(2.0 * taken.images - soft), 0, 255).astype(np.uint8)
     assembly = aligned(sharp)
-    assert not assembly.offsets.any() and assembly.doubts == ()
+    assert not assembly.offsets.any() and assembly.warnings == ()
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_night_scene_from_a_tripod_gives_no_warning(seed):
     assembly = aligned(night([(0, 0)] * 4, seed))
-    assert not assembly.offsets.any() and assembly.doubts == ()
+    assert not assembly.offsets.any() and assembly.warnings == ()
 
 
 def test_a_frame_that_cannot_be_aligned_moves_with_its_neighbour_and_is_noted():
@@ -70,7 +70,7 @@ def test_a_frame_that_cannot_be_aligned_moves_with_its_neighbour_and_is_noted():
     assembly = aligned(np.concatenate([black, images]))
     assert np.array_equal(assembly.offsets[0], assembly.offsets[1]) and assembly.offsets[1].any()
     (detail,) = assembly.details
-    assert "frame 1 and frame 2" in detail and assembly.doubts == ()
+    assert "frame 1 and frame 2" in detail and assembly.warnings == ()
 
 
 def test_misaligned_pairs_give_one_warning_that_says_what_to_do():
@@ -78,8 +78,8 @@ def test_misaligned_pairs_give_one_warning_that_says_what_to_do():
         shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]())
         for j in range(3)
     ]
-    (doubt,) = aligned(np.concatenate(shots), "mtb").doubts
-    assert "and 1 more pair" in doubt and "leave one out" in doubt
+    (warning,) = aligned(np.concatenate(shots), "mtb").warnings
+    assert "and 1 more pair" in warning and "leave one out" in warning
 
 
 @pytest.mark.parametrize("removes_ghosts", [False, True])
@@ -89,8 +89,8 @@ def test_ghost_removal_is_recommended_for_photos_that_nothing_aligns(removes_gho
         for time, texture in ((1, astronaut), (4, coffee))
     ]
     taken = bracket(np.concatenate(shots)[:, ::3, ::3], [1.0, 4.0])
-    (doubt,) = pipeline.align_bracket(taken, "auto", removes_ghosts=removes_ghosts).doubts
-    assert ("--ghosts regions" in doubt) != removes_ghosts
+    (warning,) = pipeline.align_bracket(taken, "auto", removes_ghosts=removes_ghosts).warnings
+    assert ("--ghosts regions" in warning) != removes_ghosts
 
 
 def test_the_search_range_grows_with_the_image_size():
@@ -128,8 +128,8 @@ def test_rotated_photos_are_reported_once_and_not_as_motion_too():
     room = scenes.room((280, 420))
     turned = [warp.turn(room.shape, degrees, (3, 2)) for degrees in (-1.5, 0, 1.2, -0.9)]
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), offsets=turned, rng=1)
-    (doubt,) = pipeline.assemble(taken, align="mtb").doubts
-    assert "rotates" in doubt and "frame" in doubt
+    (warning,) = pipeline.assemble(taken, align="mtb").warnings
+    assert "rotates" in warning and "frame" in warning
 
 
 @pytest.mark.parametrize(("degrees", "is_reported"), [(0, False), (0.3, True)])
@@ -139,9 +139,9 @@ def test_a_small_rotation_that_no_shift_undoes_is_reported_and_the_method_that_d
     street = scenes.street((340, 510))
     turned = [warp.turn(street.shape, angle, (3, -2)) for angle in (0, degrees)]
     taken = camera.shoot(street, camera.times_around(street, 2, stops=1.5), offsets=turned, rng=1)
-    doubts = next(pipeline.assemble_steps(taken, align="mtb")).doubts
-    assert len(doubts) == is_reported
-    assert all("--align auto" in doubt for doubt in doubts)
+    warnings = next(pipeline.assemble_steps(taken, align="mtb")).warnings
+    assert len(warnings) == is_reported
+    assert all("--align auto" in warning for warning in warnings)
 
 
 def by_percentile(monkeypatch, **validations):
@@ -235,7 +235,7 @@ def test_well_exposed_photos_that_do_not_fit_are_reported_and_change_no_times():
     ]
     mixed = bracket(np.concatenate(shots), [1, 4, 16])
     assembly = pipeline.assemble(mixed, align="auto", response="linear")
-    assert assembly.doubts and "align" in assembly.doubts[0]
+    assert assembly.warnings and "align" in assembly.warnings[0]
     assert np.array_equal(assembly.bracket.times, mixed.times)
     assert assembly.moving is None
 

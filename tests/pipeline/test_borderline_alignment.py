@@ -64,8 +64,8 @@ def test_a_measure_close_to_its_limit_neither_confirms_nor_refutes_an_alignment(
     ],
 )
 def test_a_borderline_pair_is_reported_without_a_claim(pairs, claims_misalignment, is_undecided):
-    doubts, _ = registration.describe_pairs(pairs, ("a", "b"), "look")
-    text = " ".join(doubts)
+    warnings, _ = registration.describe_pairs(pairs, ("a", "b"), "look")
+    text = " ".join(warnings)
     assert ("could not be aligned" in text or "probably misaligned" in text) == claims_misalignment
     assert ("neither confirm nor refute" in text) == is_undecided
 
@@ -87,6 +87,6 @@ def test_photos_that_may_be_aligned_are_checked_for_other_causes(is_borderline, 
         )
 
     monkeypatch.setattr(alignment, "register", register)
-    doubts = " ".join(pipeline.assemble(taken).doubts)
-    assert "misaligned" in doubts
-    assert ("white balance" in doubts) == is_borderline
+    warnings = " ".join(pipeline.assemble(taken).warnings)
+    assert "misaligned" in warnings
+    assert ("white balance" in warnings) == is_borderline

@@ -31,7 +31,7 @@ def test_95_percent_of_pixels_lie_within_the_deviation_estimated_from_the_photos
     ratio = np.median((measured.E / E)[known])  # the map's unit is the camera's own
     inside = np.abs(measured.E / ratio - E) < 1.96 * measured.s / ratio
     assert 0.93 < inside[known].mean() < 0.97 and known.mean() > 0.9
-    assert measured.notes == state.notes and measured.doubts == state.doubts
+    assert measured.notes == state.notes and measured.warnings == state.warnings
 
 
 def test_unmeasured_pixels_keep_their_bound_and_have_an_infinite_deviation(assembly):

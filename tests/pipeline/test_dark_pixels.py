@@ -39,7 +39,7 @@ def measure_log_ratios(E):
 def test_black_of_every_frame_is_gray_with_a_warning():
     assembly = stages.assemble(photograph_night(), align="none")
     assert np.abs(measure_log_ratios(assembly.E[BLACK])).max() < 0.15
-    assert assembly.doubts
+    assert assembly.warnings
 
 
 def test_dark_red_that_a_frame_measures_stays_red():
@@ -51,7 +51,7 @@ def test_dark_red_that_a_frame_measures_stays_red():
 def test_well_measured_dark_pixels_bring_no_warning_and_no_change():
     night = photograph_night()
     bright = night.images[:, :, :120]
-    assert stages.assemble(bracket(bright, night.times), align="none").doubts == ()
+    assert stages.assemble(bracket(bright, night.times), align="none").warnings == ()
     assert dark_pixels.measure_color_certainty(bright, night.times) is None
 
 

@@ -37,7 +37,7 @@ def worthless():
 def test_a_response_that_no_camera_has_marks_the_map_as_fallback(worthless):
     assembly = pipeline.assemble(worthless, align="none", times="stated")
     assert assembly.fallback
-    assert assembly.doubts
+    assert assembly.warnings
 
 
 def test_a_map_whose_frames_disagree_by_stops_is_not_worth_a_picture(taken):

@@ -38,7 +38,7 @@ def plain(moving):
 
 def test_ghosts_none_keeps_ghosts_and_warns(plain):
     assert plain.moving is None and plain.glare is None and plain.stage == "compare"
-    assert any("--ghosts regions" in doubt for doubt in plain.doubts)
+    assert any("--ghosts regions" in warning for warning in plain.warnings)
 
 
 @pytest.mark.parametrize("way", ["regions", "reference"])
@@ -64,7 +64,7 @@ def test_auto_removes_ghosts_with_a_note_if_something_moved(moving, plain):
     auto = pipeline.assemble(moving, align="none")
     regions = pipeline.assemble(moving, align="none", ghosts="regions")
     assert np.array_equal(auto.E, regions.E) and not np.array_equal(auto.E, plain.E)
-    assert any("something moved in" in note for note in auto.notes) and not auto.doubts
+    assert any("something moved in" in note for note in auto.notes) and not auto.warnings
 
 
 def test_auto_does_not_change_the_map_of_a_still_scene():
@@ -73,7 +73,7 @@ def test_auto_does_not_change_the_map_of_a_still_scene():
     none = pipeline.assemble(taken, align="none", ghosts="none")
     assert np.array_equal(auto.E, none.E)
     assert auto.moving is None
-    assert auto.doubts == none.doubts == ()
+    assert auto.warnings == none.warnings == ()
 
 
 @pytest.mark.parametrize(("align", "is_cleaned"), [("auto", True), ("mtb", False)])
@@ -84,12 +84,12 @@ def test_auto_removes_ghosts_from_photos_that_no_alignment_brings_together(
 
     def report_misalignment(bracket, *arguments, **named):
         aligned = align_bracket(bracket, "none")
-        return replace(aligned, doubts=("two photos could not be aligned",))
+        return replace(aligned, warnings=("two photos could not be aligned",))
 
     monkeypatch.setattr(registration, "align_bracket", report_misalignment)
     assembly = pipeline.assemble(moving, align=align)
     assert (assembly.moving is not None) == is_cleaned
-    assert assembly.doubts == ("two photos could not be aligned",)
+    assert assembly.warnings == ("two photos could not be aligned",)
 
 
 def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
@@ -100,8 +100,8 @@ def test_auto_removes_ghosts_that_fill_most_of_the_image_and_warns():
     regions = pipeline.assemble(taken, **KNOBS, ghosts="regions")
     assert np.mean(auto.moving > 0) > 0.5
     assert np.array_equal(auto.E, regions.E)
-    assert any("moved" in doubt for doubt in auto.doubts)
-    assert not any("--ghosts regions" in doubt for doubt in auto.doubts)
+    assert any("moved" in warning for warning in auto.warnings)
+    assert not any("--ghosts regions" in warning for warning in auto.warnings)
 
 
 def film(images, times, valid=None):
@@ -164,7 +164,7 @@ def test_auto_removes_somebody_far_away():
     taken = take_hall(shape, movers.path(5, (0, 25)), figure)
     cleaned = pipeline.assemble(taken, **KNOBS)
     assert 0 < np.mean(cleaned.moving > 0) < 0.1
-    assert cleaned.doubts == ()
+    assert cleaned.warnings == ()
 
 
 def test_ghosts_in_a_large_and_a_small_bracket_are_found_in_the_same_places():
@@ -177,7 +177,7 @@ def test_ghosts_in_a_large_and_a_small_bracket_are_found_in_the_same_places():
     small = pipeline.assemble(smaller, **KNOBS)
     enlarged = np.repeat(np.repeat(small.moving > 0, 3, axis=0), 3, axis=1)
     assert np.mean(enlarged ^ (large.moving > 0)) < 0.3 * np.mean(enlarged)
-    assert len(small.doubts) == len(large.doubts)
+    assert len(small.warnings) == len(large.warnings)
 
 
 def test_a_figure_before_a_bright_wall_gets_no_color_of_clipped_pixel_values():
@@ -217,7 +217,7 @@ def test_flare_removal_is_the_last_stage_before_the_comparison():
 def test_wrong_times_are_not_reported_as_motion(moving):
     wrong = replace(moving, times=moving.times * np.array([1, 1, 8, 9, 10]))
     assembly = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
-    assert len(assembly.doubts) == 1 and "--times estimate" in assembly.doubts[0]
+    assert len(assembly.warnings) == 1 and "--times estimate" in assembly.warnings[0]
 
 
 def test_unknown_values_of_ghosts_and_flare_raise_an_error(moving):

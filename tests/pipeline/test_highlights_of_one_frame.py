@@ -36,7 +36,7 @@ def test_a_black_frame_that_only_a_lamp_needs_stays_without_a_warning(floor):
     images[0] = np.maximum(images[0], floor)
     assembly = stages.assemble(replace(bracket, images=images), align="none")
     assert len(assembly.bracket.times) == 7
-    assert assembly.doubts == ()
+    assert assembly.warnings == ()
     assert measure_lamp_error(E, assembly) < 0.3
 
 
@@ -46,7 +46,7 @@ def test_the_only_frame_of_a_lamp_stays_and_its_wrong_time_is_corrected(middle, 
     wrong_times = bracket.times * [2, 1, 1, 1, 1, 1, 1]
     assembly = stages.assemble(replace(bracket, times=wrong_times), align="none")
     assert len(assembly.bracket.times) == 7
-    assert assembly.doubts
+    assert assembly.warnings
     assert measure_lamp_error(E, assembly) < 0.2
 
 
@@ -56,7 +56,7 @@ def test_a_stated_time_is_not_corrected_and_its_frame_stays():
     wrong = replace(bracket, times=wrong_times)
     assembly = stages.assemble(wrong, align="none", times="stated")
     assert np.array_equal(assembly.bracket.times, wrong_times)
-    assert assembly.doubts
+    assert assembly.warnings
 
 
 def test_the_shortest_frame_of_another_scene_is_left_out():

@@ -70,7 +70,7 @@ def test_in_place_gives_the_same_map_without_a_copy_of_the_photos(hand_held):
     expected = assemble(hand_held[0])
     taken = replace(hand_held[0], images=hand_held[0].images.copy())
     *_, assembly = assemble_steps(taken, in_place=True)
-    assert np.array_equal(assembly.E, expected.E) and assembly.doubts == expected.doubts
+    assert np.array_equal(assembly.E, expected.E) and assembly.warnings == expected.warnings
     assert np.array_equal(assembly.bracket.images, expected.bracket.images)
     assert np.shares_memory(assembly.bracket.images, taken.images)
 
@@ -83,9 +83,9 @@ def test_release_gives_the_same_map_and_frees_the_memory_of_the_photos(hand_held
     *_, assembly = assemble_steps(taken, in_place=True, release=True)
     assert np.array_equal(assembly.E, expected.E)
     assert np.array_equal(assembly.quality, expected.quality)
-    assert (assembly.notes, assembly.doubts, assembly.spread) == (
+    assert (assembly.notes, assembly.warnings, assembly.spread) == (
         expected.notes,
-        expected.doubts,
+        expected.warnings,
         expected.spread,
     )
     assert assembly.bracket.images.size == 0 and hand_held[0].images[3].mean() > 1
@@ -101,7 +101,9 @@ def test_release_keeps_the_photos_if_ghosts_are_removed(hand_held):
 def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     taken, offsets = hand_held
     assembly = assemble(taken)
-    assert np.array_equal(assembly.offsets - assembly.offsets[3], offsets) and assembly.doubts == ()
+    assert (
+        np.array_equal(assembly.offsets - assembly.offsets[3], offsets) and assembly.warnings == ()
+    )
     top, left = assembly.offsets.max(axis=0) - offsets.min(axis=0)  # of the map, in the scene
     h, w = assembly.E.shape[:2]
     truth = room[top : top + h, left : left + w]
@@ -119,7 +121,7 @@ def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
 def test_photos_from_a_tripod_are_not_moved(room):
     taken = camera.shoot(room, camera.times_around(room, 5))
     assembly = assemble(taken)
-    assert not assembly.offsets.any() and assembly.E.shape == room.shape and assembly.doubts == ()
+    assert not assembly.offsets.any() and assembly.E.shape == room.shape and assembly.warnings == ()
     assert assembly.notes == ()
 
 
@@ -213,7 +215,7 @@ def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction():
     images[1:4, :100] = np.linspace(40, 220, 192).astype(np.uint8)[:, None]
     valid[1:4, :100] = False
     masked = assemble(bracket(images, taken.times, valid=valid), align="none")
-    assert masked.spread < 0.05 and masked.doubts == ()
+    assert masked.spread < 0.05 and masked.warnings == ()
     blind = consistency.measure_level_exposures(images, taken.times, masked.E)
     assert consistency.measure_spread(blind) > pipeline.CONTRADICTION
 
@@ -225,7 +227,7 @@ def test_assemble_does_not_change_its_bracket(hand_held):
     assert np.array_equal(images, taken.images)
 
 
-# Doubts
+# Warnings
 
 
 @pytest.mark.papers
@@ -235,10 +237,10 @@ def test_wrong_times_give_a_warning_that_names_the_frames(room):
         taken, times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
     )
     assembly = assemble(wrong, align="none", times="stated")
-    assert len(assembly.doubts) == 1 and assembly.spread > pipeline.CONTRADICTION
+    assert len(assembly.warnings) == 1 and assembly.spread > pipeline.CONTRADICTION
     for deviation in ("b by +1", "c by -0.9"):
-        assert deviation in assembly.doubts[0]
-    assert assemble(taken, align="none").doubts == ()
+        assert deviation in assembly.warnings[0]
+    assert assemble(taken, align="none").warnings == ()
 
 
 def test_photos_without_common_levels_give_a_warning():
@@ -247,7 +249,7 @@ def test_photos_without_common_levels_give_a_warning():
     images[0, :, :1] = np.arange(20, 120, 5)[:, None]  # a few pixels that tie the levels
     images[1, :, :1] = np.arange(40, 140, 5)[:, None]
     assembly = assemble(bracket(images, [1, 2]), align="none")
-    assert np.isnan(assembly.spread) and assembly.doubts and assembly.fallback
+    assert np.isnan(assembly.spread) and assembly.warnings and assembly.fallback
 
 
 @pytest.mark.papers
@@ -260,8 +262,8 @@ def test_photos_of_two_scenes_give_a_warning_about_the_alignment(room):
     images = [
         camera.shoot(E, [t]).images[0] for E, t in zip((room, other, room), times, strict=True)
     ]
-    doubts = assemble(bracket(np.stack(images), times, ["a.jpg", "b.jpg", "c.jpg"])).doubts
-    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in doubts)
+    warnings = assemble(bracket(np.stack(images), times, ["a.jpg", "b.jpg", "c.jpg"])).warnings
+    assert any("b.jpg" in warning and "leave one out" in warning for warning in warnings)
 
 
 # Refusals
@@ -328,7 +330,7 @@ def assembled(photographs):
 )
 def test_the_map_explains_real_photographs(assembled, name, stops):
     assembly = assembled(name)
-    assert assembly.spread <= stops and assembly.doubts == ()
+    assert assembly.spread <= stops and assembly.warnings == ()
     assert np.all(np.isfinite(assembly.E)) and np.mean(assembly.quality == Quality.MEASURED) > 0.95
 
 
@@ -353,7 +355,7 @@ def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, 
     valid = ~(taken.images == (0, 0, 255)).all(axis=-1)  # the border of the registered scans
     assembly = assemble(replace(taken, valid=valid))
     published = luminance(radiance_of(shared("memorial") / "memorial.hdr", tmp_path))
-    assert not assembly.offsets.any() and assembly.doubts == ()
+    assert not assembly.offsets.any() and assembly.warnings == ()
     seen = valid.all(axis=0) & (assembly.quality == Quality.MEASURED) & (published > 0)
     ours = np.log2(luminance(assembly.E)[seen])
     theirs = np.log2(published[seen])
@@ -366,9 +368,9 @@ def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, 
 def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assembled):
     stated = assemble(photographs("tripod_phone"), times="stated")
     assert stated.spread > 0.5
-    assert any("exposure times" in doubt and "img-" in doubt for doubt in stated.doubts)
+    assert any("exposure times" in warning and "img-" in warning for warning in stated.warnings)
     assembly = assembled("tripod_phone")
-    assert assembly.spread < 0.1 and "times" in assembly.doubts[0]
+    assert assembly.spread < 0.1 and "times" in assembly.warnings[0]
 
 
 @pytest.mark.papers
@@ -377,8 +379,8 @@ def test_photos_from_different_viewpoints_give_a_warning_that_says_what_to_do(sh
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
     order = np.argsort(images.mean(axis=(1, 2, 3)))
     taken = bracket(images[order], 2.0 ** np.arange(7), [paths[j].name for j in order])
-    doubts = [doubt for doubt in assemble(taken).doubts if "leave one out" in doubt]
-    assert len(doubts) == 1 and ".jpeg and " in doubts[0]
+    warnings = [warning for warning in assemble(taken).warnings if "leave one out" in warning]
+    assert len(warnings) == 1 and ".jpeg and " in warnings[0]
 
 
 @pytest.mark.papers
@@ -399,5 +401,5 @@ def test_if_either_of_two_photos_may_be_wrong_a_warning_names_both():
     chapel = scenes.chapel((280, 420))
     taken = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)
     wrong = replace(taken, times=taken.times * [1, 1, 1, 2])
-    (doubt,) = assemble(wrong, align="none", times="stated").doubts
-    assert "frame 2" in doubt and "frame 4" in doubt
+    (warning,) = assemble(wrong, align="none", times="stated").warnings
+    assert "frame 2" in warning and "frame 4" in warning

@@ -47,7 +47,7 @@ SOUND = [
 @pytest.mark.parametrize(("folder", "options", "spread"), SOUND)
 def test_a_consistent_real_bracket_gives_no_warning(assembled, folder, options, spread):
     assembly = assembled(folder, **options)
-    assert assembly.doubts == () and assembly.fallback == ""
+    assert assembly.warnings == () and assembly.fallback == ""
     assert assembly.spread <= spread + 5e-4 and np.all(np.isfinite(assembly.E))
     assert assembly.moving is None or not assembly.moving.any()  # nothing is taken for motion
 
@@ -86,17 +86,17 @@ def test_true_times_are_not_changed(assembled, shared):
 def test_wrong_times_of_a_phone_are_replaced_by_relative_times_with_a_warning(assembled):
     assembly = assembled("tripod_phone")
     assert assembly.spread < 0.25 and assembly.E.any() and assembly.fallback == ""
-    assert any("relative exposure times" in doubt for doubt in assembly.doubts)
+    assert any("relative exposure times" in warning for warning in assembly.warnings)
 
 
 @pytest.mark.parametrize("options", [{"stops": 1}, {"times": "estimate"}])
 def test_photos_from_different_viewpoints_give_warnings(assembled, options):
     assembly = assembled("crusader/frames", **options)
-    assert assembly.doubts and np.all(np.isfinite(assembly.E)) and assembly.E.any()
+    assert assembly.warnings and np.all(np.isfinite(assembly.E)) and assembly.E.any()
 
 
 def test_photos_without_times_become_a_map_with_relative_times_and_a_warning(assembled):
     assembly = assembled("mertens_house")
     assert assembly.fallback == "" and assembly.E.any()
     assert np.all(np.diff(assembly.bracket.times) > 0)
-    assert any("relative exposure times" in doubt for doubt in assembly.doubts)
+    assert any("relative exposure times" in warning for warning in assembly.warnings)

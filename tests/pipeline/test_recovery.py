@@ -40,7 +40,7 @@ def taken(decades):
 def test_the_response_of_the_prior_is_used_if_the_photos_contradict_their_times(taken, method):
     wrong = replace(taken, times=taken.times * [1, 1, 1, 10_000])
     recovered = pipeline.assemble(wrong, align="none", response=method)
-    assert any("check the exposure times" in doubt for doubt in recovered.doubts)
+    assert any("check the exposure times" in warning for warning in recovered.warnings)
     assert recovered.fallback and np.all(np.isfinite(recovered.E)) and recovered.E.any()
 
 
@@ -51,8 +51,8 @@ def test_the_response_of_the_prior_is_used_if_a_method_finds_none(taken, monkeyp
     monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
     recovered = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
     assert laws.curve_error(recovered.g, true_g("film")) < 0.05 and not recovered.fallback
-    (doubt,) = recovered.doubts
-    assert "expected the moon" in doubt
+    (warning,) = recovered.warnings
+    assert "expected the moon" in warning
 
 
 @pytest.mark.quick

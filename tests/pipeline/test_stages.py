@@ -33,8 +33,8 @@ def test_a_frame_that_contradicts_all_others_is_dropped_with_a_warning_only_if_i
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((3,), rivals))
     assembly = corrections.drop_outlying_frames(STATE, has_relative_times=relative)
     assert assembly.bracket.names == ("a", "b", "c", "e")
-    assert (len(assembly.doubts), len(assembly.notes)) == (doubted, not doubted)
-    (message,) = assembly.doubts + assembly.notes
+    assert (len(assembly.warnings), len(assembly.notes)) == (doubted, not doubted)
+    (message,) = assembly.warnings + assembly.notes
     assert ": d;" in message and ("b or c" in message) == doubted
 
 
@@ -42,7 +42,7 @@ def test_more_than_one_dropped_frame_is_a_warning(monkeypatch):
     monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((0, 3), ()))
     assembly = corrections.drop_outlying_frames(STATE, has_relative_times=True)
     assert assembly.bracket.names == ("b", "c", "e")
-    assert assembly.doubts and not assembly.notes
+    assert assembly.warnings and not assembly.notes
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_relative_times_replace_those_of_a_worthless_map_if_they_halve_the_limit
     monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
     refined = timing.refine_times(STATE, "auto", 0.7)
     assert np.array_equal(refined.bracket.times, (relative if replaced else TAKEN).times)
-    assert ["0.70 stops" in doubt for doubt in refined.doubts] == [True] * replaced
+    assert ["0.70 stops" in warning for warning in refined.warnings] == [True] * replaced
 
 
 def test_photos_that_get_darker_with_longer_times_are_named():

@@ -74,8 +74,8 @@ def test_relative_times_of_a_linear_camera_are_right(room):
 
 def test_equal_times_of_different_photographs_are_estimated_with_a_warning(taken):
     assembly = pipeline.assemble(replace(taken, times=np.full(5, 0.01)))
-    assert "relative" in assembly.doubts[0]
-    assert "--stops" in assembly.doubts[0]
+    assert "relative" in assembly.warnings[0]
+    assert "--stops" in assembly.warnings[0]
     assert np.all(np.diff(assembly.bracket.times) > 0) and assembly.spread < 0.1
     assert assembly.bracket.has_relative_times
     with pytest.raises(ValueError, match="at least two different exposures"):
@@ -105,18 +105,18 @@ def test_times_in_the_wrong_order_are_estimated_with_a_warning_unless_they_are_t
     for completed in (corrected, estimated):
         assert np.array_equal(completed.bracket.images, taken.images)
         assert completed.bracket.has_relative_times
-    assert "relative" in corrected.doubts[0]
+    assert "relative" in corrected.warnings[0]
     assert "relative" in estimated.notes[0]
-    assert not estimated.doubts
+    assert not estimated.warnings
     assembly = pipeline.assemble(shuffled, align="none")
-    assert assembly.doubts
+    assert assembly.warnings
     assert assembly.spread < 0.1
 
 
 def test_true_times_are_not_changed_and_give_no_note(taken):
     assembly = pipeline.assemble(taken)
     assert assembly.bracket.times.tobytes() == taken.times.tobytes()
-    assert not assembly.doubts and not assembly.fallback
+    assert not assembly.warnings and not assembly.fallback
     assert assembly.notes == ()
 
 
@@ -153,13 +153,13 @@ def mistaken():
 def test_misaligned_photos_correct_no_times_and_report_no_contradictions(mistaken, monkeypatch):
     def lie_apart(*arguments, **named):
         aligned = align_bracket(*arguments, **named)
-        return replace(aligned, doubts=("a and b could not be aligned",), is_misaligned=True)
+        return replace(aligned, warnings=("a and b could not be aligned",), is_misaligned=True)
 
     align_bracket = registration.align_bracket
-    assert len(pipeline.assemble(mistaken, align="none").doubts) == 2
+    assert len(pipeline.assemble(mistaken, align="none").warnings) == 2
     monkeypatch.setattr(registration, "align_bracket", lie_apart)
     apart = pipeline.assemble(mistaken, align="none")
-    assert apart.doubts == ("a and b could not be aligned",)
+    assert apart.warnings == ("a and b could not be aligned",)
     assert np.array_equal(apart.bracket.times, mistaken.times)
 
 
@@ -167,7 +167,7 @@ def test_times_that_leave_nothing_to_compare_are_reported_without_a_number(mista
     (state, *_) = pipeline.assemble_steps(
         replace(mistaken, times=2.0 ** np.arange(5) / 64), align="none"
     )
-    (warning,) = refine_times(state, "auto", np.inf).doubts
+    (warning,) = refine_times(state, "auto", np.inf).warnings
     assert "inf" not in warning and "relative exposure times" in warning
 
 
@@ -183,6 +183,6 @@ def test_close_to_the_limit_of_a_replacement_the_stated_times_stay_with_a_warnin
     monkeypatch.setattr(timing, "MIN_WORTHLESS_STOPS", factor * corrected.spread)
     refined = refine_times(state, "auto", spread)
     assert refined.bracket.has_relative_times == is_replaced
-    text = " ".join(refined.doubts)
+    text = " ".join(refined.warnings)
     assert "the stated times contradict the pixels" in text
     assert ("the pixels do not show which" in text) == (not is_replaced)

@@ -65,7 +65,7 @@ def test_an_invalid_shape_raises_an_error(shape):
 
 def test_the_pipeline_gives_no_warning_for_the_photos(taken):
     assembly = pipeline.assemble(taken)
-    assert assembly.doubts == () and assembly.fallback == "" and assembly.spread < 0.05
+    assert assembly.warnings == () and assembly.fallback == "" and assembly.spread < 0.05
     assert np.array_equal(assembly.bracket.times, taken.times)
 
 
@@ -160,7 +160,7 @@ def test_the_times_of_the_room_are_in_exif_and_one_stop_apart(room):
 
 
 def test_the_map_of_the_room_spans_nearly_ten_stops_without_a_warning(room_map):
-    assert room_map.doubts == () and room_map.fallback == ""
+    assert room_map.warnings == () and room_map.fallback == ""
     assert 9.3 < scenes.decades(room_map.E) / np.log10(2) < 9.9 and room_map.spread < 0.03
 
 

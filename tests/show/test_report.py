@@ -262,20 +262,20 @@ def test_report_has_no_figure_of_pixel_quality_if_all_pixels_were_measured(tmp_p
 
 def test_report_shows_warnings_above_the_first_image_and_notes(tmp_path):
     shown = report(
-        tmp_path, replace(flat(), doubts=("the times are wrong",), notes=("a frame is dark",))
+        tmp_path, replace(flat(), warnings=("the times are wrong",), notes=("a frame is dark",))
     )
     assert shown.source.index("the times are wrong") < shown.source.index("<img")
     assert "Warnings" in shown.headings and "a frame is dark" in shown.text
 
 
 def test_report_has_no_empty_sections_for_warnings_and_notes(tmp_path):
-    shown = report(tmp_path, replace(flat(), doubts=(), notes=()))
+    shown = report(tmp_path, replace(flat(), warnings=(), notes=()))
     assert not {"Warnings", "Notes"} & set(shown.headings)
 
 
 def test_file_names_and_notes_cannot_inject_html(tmp_path):
     evil = ['<script>alert("x")</script>.jpg', "\" onerror='alert(1)'&amp;.jpg"]
-    assembly = replace(flat(names=evil), doubts=("<b>bold</b>",), notes=("<img src=x>",))
+    assembly = replace(flat(names=evil), warnings=("<b>bold</b>",), notes=("<img src=x>",))
     shown = report(tmp_path, assembly, recipe={"<i>": "</style>"})
     assert shown.wrong == [] and shown.open == []
     assert not [attrs for tag, attrs in shown.tags if tag == "i" and not attrs]

@@ -104,7 +104,7 @@ def test_dropped_photos_become_the_map_of_the_command(site, page, bracket_files,
     result = page.get_by_role("region", name="Result")
     summary = result.locator(".summary").inner_text()
     expected = pipeline.assemble(photos.read_bracket(bracket_files))
-    verdict = "warning" if expected.doubts else "OK: "
+    verdict = "warning" if expected.warnings else "OK: "
     assert verdict in summary and f"the {COUNT} photos agree" in summary
     expected_path = tmp_path / "expected.hdr"
     radiance.write_radiance(expected_path, expected.E)

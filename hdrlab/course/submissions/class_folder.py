@@ -131,12 +131,12 @@ class _Scanner:
     def add(self, path: Path, problem: str) -> None:
         """Take a file as the submission of its team, or note why it does not count."""
         name = path.relative_to(self._folder).as_posix()
-        team, doubt = self._find_team(name.partition("/")[0])
+        team, warning = self._find_team(name.partition("/")[0])
         received = self._unused_times.pop(_table_key(name), None)
         if team is None and not name.lower().endswith(SUFFIXES):
             return
         if team is None:
-            self._note(name, problem or doubt or "no student or team of the roster has this name")
+            self._note(name, problem or warning or "no student or team of the roster has this name")
             return
         if problem:
             self._refused[team] = self._note(name, problem)

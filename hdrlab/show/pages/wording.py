@@ -138,7 +138,7 @@ def describe_picture(name: str, assembly: "Assembly", operator: str) -> str:
 
 def summarize_assembly(assembly: "Assembly", outputs: Sequence[str]) -> str:
     """Return OK or the number of warnings, what was written, and how far the photos agree."""
-    count = len(assembly.doubts)
+    count = len(assembly.warnings)
     verdict = "OK" if count == 0 else f"{count} {'warning' if count == 1 else 'warnings'}"
     agreement = describe_agreement(assembly.spread, len(assembly.bracket.times))
     return f"{verdict}: {', '.join(outputs)}; {agreement}"

@@ -190,7 +190,7 @@ class OwnPhotos:
         ]
         if state.fallback:
             notes.append(f"{pictures.FUSION_NOTE}, because {state.fallback}")
-        warnings = [_advise_for_page(text) for text in state.doubts]
+        warnings = [_advise_for_page(text) for text in state.warnings]
         notes = [_advise_for_page(text) for text in (*notes, *state.notes)]
         if any(OPTION.search(text) for text in (*warnings, *notes)):
             notes.append(OPTION_NOTE)
@@ -260,7 +260,7 @@ class OwnPhotos:
         radiance.write_radiance(
             self.folder / MAP_NAME,
             assembly.E,
-            comments=[f"doubt: {doubt}" for doubt in assembly.doubts],
+            comments=[f"warning: {warning}" for warning in assembly.warnings],
             luminance_of_unit=assembly.bracket.luminance_of_unit,
             max_luminance_of_unit=assembly.bracket.max_luminance_of_unit,
         )

@@ -1,4 +1,4 @@
-"""The texts of warnings and notes, kept together in doubts.toml so that they read alike; their margin."""
+"""The texts of warnings and notes, kept together in warning_texts.toml so that they read alike."""
 
 import tomllib
 from pathlib import Path
@@ -7,11 +7,13 @@ from pathlib import Path
 # the warning claims less: other processors round differently.
 MARGIN = 1.1
 
-SENTENCES: dict[str, str] = tomllib.loads(Path(__file__).with_name("doubts.toml").read_text("utf8"))
+SENTENCES: dict[str, str] = tomllib.loads(
+    Path(__file__).with_name("warning_texts.toml").read_text("utf8")
+)
 
 
 def warning_text(name: str, **values: object) -> str:
-    """Return a text of doubts.toml with `values` filled in.
+    """Return a text of warning_texts.toml with `values` filled in.
 
     Examples
     --------
