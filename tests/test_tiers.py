@@ -49,6 +49,7 @@ SELECTED = {
 }
 
 
+@pytest.mark.grading
 @pytest.mark.parametrize("tier", SELECTED)
 def test_the_nearest_marker_names_the_tier(tier, tmp_path):
     assert collected(tmp_path, tier) == SELECTED[tier]

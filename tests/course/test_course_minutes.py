@@ -68,6 +68,7 @@ def test_the_first_page_has_every_notebook_in_one_chapter_with_a_picture(page):
     assert sorted(listed) == sorted(card.stem for card in cards.iterdir())
 
 
+@pytest.mark.grading
 def test_the_course_plan_lists_every_task_with_its_points(page):
     listed = [
         (sheet, name, int(points))

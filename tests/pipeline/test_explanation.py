@@ -17,6 +17,8 @@ from hdrlab.radiance.merge import METHODS, Quality, merge_with_quality
 # float32 has 24 bits; the sums of the merge round a few of their last ones
 FLOAT32_ROUNDING = 2e-6
 
+pytestmark = pytest.mark.papers
+
 
 def combine(claims, shares, method):
     """Return the mean of claims (P, ...) with shares (P, ...) that add up to 1."""

@@ -92,6 +92,7 @@ def test_displays_without_light_are_rejected(peak):
         transfer.display_light(0.5, peak=peak)
 
 
+@pytest.mark.papers
 def test_pq_and_hlg_agree_with_colour_science():
     models = pytest.importorskip("colour.models")
     with warnings.catch_warnings():
