@@ -38,9 +38,9 @@ def still(frames):
     return np.zeros((len(frames), *grid, 2), int)
 
 
-def merge(frames, offsets=None, **knobs):
+def merge(frames, offsets=None, **options):
     offsets = still(frames) if offsets is None else offsets
-    return temporal_merge.merge(frames, offsets, **{"shot": SHOT, "read": READ, **knobs})
+    return temporal_merge.merge(frames, offsets, **{"shot": SHOT, "read": READ, **options})
 
 
 def rms(x):
@@ -67,6 +67,12 @@ class Burst:
     @property
     def noise(self):
         return np.sqrt(SHOT * self.truth + READ)
+
+
+def means_of_4(X):
+    """Return the means of blocks of 2 x 2 pixels."""
+    rows, columns = X.shape
+    return X.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3))
 
 
 def hand_held_chapel(*, radiance=0.2, step=12, seed=0):
@@ -218,8 +224,9 @@ def test_noise_of_a_still_burst_falls_as_the_formula_says(frame_count, tuning):
     assert rms(merged - 0.5) / 0.01 == pytest.approx(expected_noise(frame_count, tuning), rel=0.03)
 
 
-def test_8_frames_at_the_default_reach_the_bound_within_10_percent():
-    assert expected_noise(FRAME_COUNT, temporal_merge.TUNING) * np.sqrt(FRAME_COUNT) < 1.1
+@pytest.mark.parametrize(("tuning", "limit"), [(12.0, 1.1), (temporal_merge.TUNING, 1.35)])
+def test_noise_of_8_still_frames_is_near_the_bound(tuning, limit):
+    assert expected_noise(FRAME_COUNT, tuning) * np.sqrt(FRAME_COUNT) < limit
 
 
 def test_a_moving_square_leaves_no_ghost():
@@ -246,14 +253,35 @@ def test_channels_are_merged_separately():
 
 @pytest.mark.papers
 @pytest.mark.parametrize(("radiance", "step"), [(0.05, 12), (0.2, 12), (0.8, 12), (0.2, 3)])
-def test_hand_held_burst_is_within_10_percent_of_the_bound_and_has_no_ghosts(radiance, step):
-    """At the default, compared with the known radiance: where nothing moved, and where the ball did."""
+@pytest.mark.parametrize(("tuning", "limit"), [(12.0, 1.1), (temporal_merge.TUNING, 1.35)])
+def test_hand_held_burst_is_near_the_bound_and_has_no_ghosts(radiance, step, tuning, limit):
+    """Compared with the known radiance: where nothing moved, and where the ball did."""
     burst = hand_held_chapel(radiance=radiance, step=step)
-    merged = temporal_merge.align_and_merge(burst.frames, shot=SHOT, read=READ)
+    merged = temporal_merge.align_and_merge(burst.frames, shot=SHOT, read=READ, tuning=tuning)
     error = (merged - burst.truth) / burst.noise
-    assert rms(inside(error)[~inside(burst.moving)]) * np.sqrt(FRAME_COUNT) < 1.1
+    assert rms(inside(error)[~inside(burst.moving)]) * np.sqrt(FRAME_COUNT) < limit
     single = (burst.frames[0] - burst.truth)[burst.moving]
     assert rms((merged - burst.truth)[burst.moving]) < rms(single)
+
+
+@pytest.mark.papers
+def test_a_hand_that_moves_by_half_pixels_leaves_less_error_than_one_frame_also_at_edges():
+    """Each pixel is the mean of 2 x 2 pixels of a larger scene, which moves by whole ones of those."""
+    L = luminance(scenes.street((512, 768)))
+    X = np.minimum(0.8 * L / np.quantile(L, 0.985), 1)
+    rng = np.random.default_rng(1)
+    offsets = rng.integers(-6, 7, (FRAME_COUNT, 2))
+    offsets[0] = 0
+    moments = [means_of_4(np.roll(X, offset, axis=(0, 1))) for offset in offsets]
+    truth = moments[0]
+    frames = np.stack([expose(moment, rng) for moment in moments])
+    merged = temporal_merge.align_and_merge(frames, shot=SHOT, read=READ)
+    slope = np.hypot(*np.gradient(truth))
+    is_edge = inside(slope > np.quantile(slope, 0.9))
+    merged_error = inside(merged - truth)
+    single_error = inside(frames[0] - truth)
+    assert rms(merged_error) < 0.8 * rms(single_error)
+    assert rms(merged_error[is_edge]) < rms(single_error[is_edge])
 
 
 def test_errors_name_what_was_expected():
