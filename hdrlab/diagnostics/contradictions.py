@@ -85,13 +85,11 @@ class Contradictions:
     """What contradicts the exposure times of a bracket; the module explains the fields.
 
     stops, tints : (P,)
-    other_stops : (P,)
-        The errors by another straight line that is about as likely, and makes other photos wrong;
-        empty if there is none.
     regions, significance, corners : (P - 1,)
     cost : float
 
-    Values that are not known are NaN.
+    Values that are not known are NaN. `other_stops` (P,) are the errors by another straight line that
+    is about as likely, and makes other photos wrong. It is empty if there is no such line.
     """
 
     stops: F64

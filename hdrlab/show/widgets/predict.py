@@ -2,6 +2,7 @@
 
     predict.number("How many stops are between the window and the bench?", 11.4, (0, 20),
     unit="stops")
+
 Readers answer with pointer, finger or keys, or skip the question with one click. This needs no
 kernel. The answer stays in the notebook's own state and is sent nowhere.
 """
