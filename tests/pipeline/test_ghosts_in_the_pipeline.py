@@ -84,7 +84,8 @@ def test_auto_removes_ghosts_from_photos_that_no_alignment_brings_together(
 
     def report_misalignment(bracket, *arguments, **named):
         aligned = align_bracket(bracket, "none")
-        return replace(aligned, warnings=("two photos could not be aligned",))
+        warnings = ("two photos could not be aligned",)
+        return replace(aligned, warnings=warnings, is_misaligned=True)
 
     monkeypatch.setattr(registration, "align_bracket", report_misalignment)
     assembly = pipeline.assemble(moving, align=align)
