@@ -1446,7 +1446,10 @@ SENTENCES = {
         "On the sky nothing differs but noise, and the search finds the offset": lambda n: (
             n.search_at("the sky").offset != tuple(n.hand[1])
         ),
-        "1 - A = 12 / (4 + 12)": lambda n: n.temporal_merge.TUNING == 12,
+        "1 - A = 12 / (4 + 12)": lambda n: np.allclose(
+            1 - n.temporal_merge.shrinkage(np.full((16, 16), 2 * np.sqrt(2.0) * 16), 1.0, 12.0),
+            12 / (4 + 12),
+        ),
         "most of their frequencies are averaged": lambda n: (
             np.median(n.weigh_at("the walker").weights[1:]) > 0.7 / 8
         ),
@@ -1484,7 +1487,7 @@ SENTENCES = {
 def bounds_with_true_motion(n):
     """Return `bounds_of_noise` with c = 12 if all tiles move as the hand did."""
     offsets = np.broadcast_to(n.hand[:, None, None], n.offsets.shape)
-    merged = n.temporal_merge.merge(n.frames, offsets, **n.NOISE)
+    merged = n.temporal_merge.merge(n.frames, offsets, tuning=12.0, **n.NOISE)
     return np.sqrt(8) * n.noise_of(merged)
 
 
