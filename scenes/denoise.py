@@ -57,7 +57,8 @@ def average(
     wide = [
         np.pad(x, (*pad, (0, 0))[: x.ndim], mode="reflect") for x in (means, light, guides, var)
     ]
-    total, sums = np.zeros((H, W, 1), np.float32), np.zeros_like(means)
+    total = np.zeros((H, W, 1), np.float32)
+    sums = np.zeros_like(means)
     for dy, dx in product(range(-radius, radius + 1), repeat=2):
         there = (slice(radius + dy, radius + dy + H), slice(radius + dx, radius + dx + W))
         value, other, guide, other_var = (x[there] for x in wide)
@@ -97,9 +98,11 @@ def denoise(
     Pacific Graphics 2013.
     """
     under = np.maximum(rho, np.float32(DARKEST))
-    a, b = believed(A, B) / under, believed(B, A) / under
+    a = believed(A, B) / under
+    b = believed(B, A) / under
     # Comparing square roots keeps a bright spot from being taken for its neighbours' noise.
-    root_a, root_b = np.sqrt(a), np.sqrt(b)
+    root_a = np.sqrt(a)
+    root_b = np.sqrt(b)
     alike = partial(
         average,
         guides=guides,
@@ -123,12 +126,16 @@ def finer(light: Float, coarse: Float, guides: Float, *, tolerance: float = 0.15
     """
     H, W = guides.shape[:2]
     pad = ((2, 2), (2, 2), (0, 0))
-    wide, known = np.pad(light, pad, mode="edge"), np.pad(coarse, pad, mode="edge")
-    row, column = np.arange(H), np.arange(W)
-    total, sums = np.zeros((H, W, 1), np.float32), np.zeros((H, W, 3), np.float32)
+    wide = np.pad(light, pad, mode="edge")
+    known = np.pad(coarse, pad, mode="edge")
+    row = np.arange(H)
+    column = np.arange(W)
+    total = np.zeros((H, W, 1), np.float32)
+    sums = np.zeros((H, W, 3), np.float32)
     for dy in range(-2, 3):
         for dx in range(-2, 3):
-            y, x = row // 2 + dy, column // 2 + dx
+            y = row // 2 + dy
+            x = column // 2 + dx
             there = np.ix_(y + 2, x + 2)
             away = ((2 * y + 0.5 - row) ** 2)[:, None] + (2 * x + 0.5 - column) ** 2
             d = ((guides - known[there]) ** 2).sum(axis=2) / tolerance**2

@@ -85,7 +85,8 @@ def radiance(
 ) -> Float:
     """Return E of a frame, the sum over all lights."""
     known: dict[tuple[str, ...], tuple[Guides, Guides]] = {}
-    views, smooth = (frame, halved(frame)), min(samples, SMOOTH)
+    views = (frame, halved(frame))
+    smooth = min(samples, SMOOTH)
     E: Any = 0.0
     for k, light in enumerate(relayed(mi, place).values()):
         if light.absent not in known:

@@ -23,15 +23,18 @@ from hdrlab.show import plots, widgets
 FILM = camera.Camera(sensitivity=1 / 16, full_well=20_000, read_noise=5)
 TIMES = 2.0 ** np.arange(-10, 3, 2)
 # milliseconds
-STEP, HOLD = 70, 1600
+STEP = 70
+HOLD = 1600
 
 
 def player(shape: tuple[int, int] = (256, 384), steps: int = 21) -> widgets.Player:
     """Return the widget of the notebook: points of sixty pixels that slide onto one curve."""
     bracket = camera.shoot(scenes.room(shape), TIMES, FILM, rng=4)
-    B, Z = np.log(bracket.times), sampling.by_grid(bracket.images[..., 1], 60)
+    B = np.log(bracket.times)
+    Z = sampling.by_grid(bracket.images[..., 1], 60)
     g, lE = debevec.gsolve(Z, B, 30, weights.hat())
-    parts, span = np.linspace(0, 1, steps), (B[0] - 1, B[0] + 17)
+    parts = np.linspace(0, 1, steps)
+    span = (B[0] - 1, B[0] + 17)
     return widgets.play(
         parts, lambda part: plots.samples(Z, part * lE, B, g=g, span=span), alt="Onto one curve"
     )
@@ -42,7 +45,8 @@ def animate(frames: list[bytes]) -> bytes:
     there = [Image.open(io.BytesIO(frame)).convert("RGB") for frame in frames]
     lasts = [STEP] * len(there)
     lasts[0] = lasts[-1] = HOLD
-    back, out = slice(-2, 0, -1), io.BytesIO()
+    back = slice(-2, 0, -1)
+    out = io.BytesIO()
     options = {"lossless": True, "quality": 100, "method": 6, "loop": 0}
     film = [*there, *there[back]]
     film[0].save(

@@ -48,7 +48,10 @@ def spots(mi: ModuleType, made: Any, beam: Material, count: int = 96) -> tuple[M
     ).reshape(-1, 10)
     light = np.pi * zoom(beam["irradiance"], count).reshape(-1, 3)  # as Mitsuba's projector has it
     hit = (found[:, 9] > 0) & (light.max(axis=1) > DARK * light.max())
-    rho, n, P, t = found[hit, :3], found[hit, 3:6], found[hit, 6:9], found[hit, 9]
+    rho = found[hit, :3]
+    n = found[hit, 3:6]
+    P = found[hit, 6:9]
+    t = found[hit, 9]
     ray = unit(P - np.array(beam["look_at"]["origin"]))
     n = n * -np.sign((n * ray).sum(axis=1, keepdims=True))
     cos = np.maximum(-(n * ray).sum(axis=1), GRAZING)

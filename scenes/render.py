@@ -70,10 +70,12 @@ def cover(mi: ModuleType, place: Place, frame: Frame) -> Float:
 
 def around(mask: Float) -> tuple[slice, slice]:
     """Return the rectangle around a mask with a margin for shadows, its corners at even places."""
-    spans, margin = [], len(mask) // 5
+    spans = []
+    margin = len(mask) // 5
     for axis in (0, 1):
         at = np.flatnonzero(mask.any(axis=1 - axis))
-        low, high = max(int(at[0]) - margin, 0), min(int(at[-1]) + 1 + margin, mask.shape[axis])
+        low = max(int(at[0]) - margin, 0)
+        high = min(int(at[-1]) + 1 + margin, mask.shape[axis])
         spans.append(slice(low // 2 * 2, high // 2 * 2))
     return spans[0], spans[1]
 
@@ -95,7 +97,8 @@ def visitor(E: Float, without: Float, hidden: Float) -> Float:
 
 def once(name: str, *, height: int, samples: int, seed: int, variant: str) -> dict[str, Float]:
     """Return the layers of a place, rendered once; see `rendered`."""
-    mi, place = mitsuba(variant), model(name)
+    mi = mitsuba(variant)
+    place = model(name)
     frame = Frame(height, height * 3 // 2)
     E = radiance(mi, place, place.parts, frame, samples, seed)
     hidden = cover(mi, place, frame)
@@ -174,7 +177,8 @@ def main() -> None:
         "--variant", default="scalar_rgb", help="of Mitsuba; llvm_ad_rgb is quicker where LLVM is"
     )
     knobs = vars(parser.parse_args())
-    name, out = knobs.pop("name"), knobs.pop("out")
+    name = knobs.pop("name")
+    out = knobs.pop("out")
     try:
         with elapsed(f"rendering the {name}"):
             layers = rendered(name, **knobs)

@@ -62,7 +62,8 @@ def write_ply(path: Path, mesh: Mesh) -> None:
     head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.vertices)}\n{fields}"
     head += f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     faces = np.empty(len(mesh.faces), [("count", "u1"), ("corners", "<i4", 3)])
-    faces["count"], faces["corners"] = 3, mesh.faces
+    faces["count"] = 3
+    faces["corners"] = mesh.faces
     points = np.concatenate([mesh.vertices, mesh.normals, mesh.uv], axis=1).astype("<f4")
     path.write_bytes(head.encode() + points.tobytes() + faces.tobytes())
 
@@ -164,7 +165,8 @@ def solids(parts: Parts, light: Light) -> Parts:
 
 def traced(mi: ModuleType, scene: Any, integrator: Material, samples: int, seed: int) -> Float:
     """Return the mean of `samples` paths through each pixel, or a few more, (H, W, C)."""
-    kind, passes = mi.load_dict(integrator), -(-samples // PASS)
+    kind = mi.load_dict(integrator)
+    passes = -(-samples // PASS)
     total: Any = 0.0
     for k in range(passes):
         total = total + np.array(
@@ -194,7 +196,8 @@ def sharp(
     (top, bottom, _), (left, right, _) = (
         each.indices(n) for each, n in zip(frame[2:], frame[:2], strict=True)
     )
-    kind, step = mi.load_dict(integrator), max(LINES // (side**2 * (right - left)), 1)
+    kind = mi.load_dict(integrator)
+    step = max(LINES // (side**2 * (right - left)), 1)
     strips = []
     for k, row in enumerate(range(top, bottom, step)):
         strip = frame._replace(rows=slice(row, min(row + step, bottom)))

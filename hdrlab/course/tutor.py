@@ -286,13 +286,13 @@ class Tutor:
     def _question(self, number: int, step: Step) -> predict.Prediction:
         """Return the form that asks for a step's right value."""
         what = "the last line" if "\n" in step.code else "this"
-        asked = f"{number}. What should {what} give?"
+        text = f"{number}. What should {what} give?"
         labels = self._labels(step)
         if labels:
             truth = labels.index(snippets.show(step.right))
-            form = predict.choice(asked, truth, labels)
+            form = predict.choice(text, truth, labels)
         else:
-            form = predict.entry(asked, float(f"{float(step.right):.{MAX_TYPED_DIGITS}g}"))
+            form = predict.entry(text, float(f"{float(step.right):.{MAX_TYPED_DIGITS}g}"))
         form.code = step.code
         form.covers = False
         return form
@@ -301,14 +301,14 @@ class Tutor:
         """Return the values to choose from; none for a number that a student can type."""
         if isinstance(step.right, bool | np.bool):
             return ["False", "True"]
+        if _is_typed(step.right):
+            return []
         values = [step.right]
         if not step.failure:
             values.append(step.yours)
         for known in self._known:
             with suppress(Exception):  # a wrong function may fail in any way
                 values.append(run_code(step.code, self._task.id, known.function))
-        if _is_typed(step.right):
-            return []
         if not _is_number(step.right):
             values.append("an error")
         elif not np.isfinite(float(step.right)):
@@ -353,25 +353,27 @@ class Tutor:
         items = "".join(f"<li>{_html(d.sentence)}</li>" for d in options)
         yield f"<p>{number}. The assignment says:</p><ol>{items}</ol>"
         labels = [f"Sentence {place}" for place in range(1, len(options) + 1)]
-        asked = "Which of these sentences does your function not obey?"
-        form = predict.choice(asked, options.index(broken[0]), labels)
+        text = "Which of these sentences does your function not obey?"
+        form = predict.choice(text, options.index(broken[0]), labels)
         form.covers = False
         yield form
         yield _paragraph(f"The check that failed: {escape(shown.promise)}.")
 
     def _closing(self, steps: Sequence[Step], mistakes: Sequence[KnownMistake]) -> str:
         """Return the last words: the mistake, and the lines of the student's code."""
-        said = "".join(_paragraph(f"<b>Likely mistake:</b> {escape(m.sentence)}") for m in mistakes)
+        named = "".join(
+            _paragraph(f"<b>Likely mistake:</b> {escape(mistake.sentence)}") for mistake in mistakes
+        )
         numbers = self._find_lines(steps, mistakes)
         if not numbers:
-            return said + _paragraph(
+            return named + _paragraph(
                 "hdrlab does not know which line of your code it is. Look for the one that should "
                 "do what the sentence of the assignment says."
             )
         source = self._code.sources[self._task.id].split("\n")
         texts = "\n".join(source[number - 1].strip() for number in numbers)
         these = "this line" if len(numbers) == 1 else "these lines"
-        return said + (
+        return named + (
             f"<p>Look at {these} of your code. With a change in {these} alone, your "
             f"{_code(self._task.name)} is right for all inputs above:</p><pre>{escape(texts)}</pre>"
         )
@@ -390,8 +392,8 @@ class Tutor:
                 return self._is_right_everywhere(changed, steps, subject)
 
             for known in mistakes:
-                for found in self._edits(known):
-                    numbers = patches.wrong_lines(source, found, is_right)
+                for edits in self._edits(known):
+                    numbers = patches.wrong_lines(source, edits, is_right)
                     if numbers:
                         return numbers
         return []

@@ -60,7 +60,8 @@ def contrast(F: F32) -> F32:
     """
     Y = F[0] if len(F) == 1 else LUMA[0] * F[0] + LUMA[1] * F[1] + LUMA[2] * F[2]
     Y = np.pad(Y, 1, mode="reflect")
-    rows, columns = Y[:-2, 1:-1] + Y[2:, 1:-1], Y[1:-1, :-2] + Y[1:-1, 2:]
+    rows = Y[:-2, 1:-1] + Y[2:, 1:-1]
+    columns = Y[1:-1, :-2] + Y[1:-1, 2:]
     # summed by pairs: 2 Y + 2 Y is 4 Y without rounding, where Y is flat
     return np.abs(rows + columns - 4 * Y[1:-1, 1:-1])
 

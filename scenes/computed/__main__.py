@@ -7,7 +7,8 @@ from scenes.computed.subjects import SUBJECTS
 from scenes.computed.view import room
 from scenes.files import write_layers
 
-SHAPE, SAMPLES = (512, 768), 4
+SHAPE = (512, 768)
+SAMPLES = 4
 
 
 def main() -> None:

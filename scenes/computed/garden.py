@@ -32,10 +32,9 @@ def lawn(d: Points, pixel: float) -> Points:
     """Return the light of the ground that the sight meets below the horizon, with its winding path."""
     x, y, _ = d
     z = EYE_HEIGHT / np.maximum(-y, 1e-3)
-    x, w = (
-        x * z,
-        pixel * z**1.5,
-    )  # seen at a slant, a pixel is longer than wide: a width between the two
+    # seen at a slant, a pixel is longer than wide: a width between the two
+    x = x * z
+    w = pixel * z**1.5
     grass = look_up("grass", x / 2.5, z / 2.5, w / 2.5) * rgb(900, 1300, 260)
     gravel = look_up("gravel", x / 2, z / 2, w / 2) * rgb(2300, 2000, 1600)
     winding = 0.1 + 0.25 * np.sin(0.6 * z)

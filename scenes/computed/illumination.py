@@ -39,7 +39,9 @@ def from_window(P: Points, face: int, window: Box) -> Points:
     (x0, y0, z), (x1, y1, _) = window
     corners = [rgb(*corner) - P for corner in ((x0, y0, z), (x0, y1, z), (x1, y1, z), (x1, y0, z))]
     sights = [corner / length(corner) for corner in corners]
-    i, j, k = face // 2, (face // 2 + 1) % 3, (face // 2 + 2) % 3
+    i = face // 2
+    j = (face // 2 + 1) % 3
+    k = (face // 2 + 2) % 3
     F = np.zeros_like(P[i])
     for a, b in zip(sights, sights[1:] + sights[:1], strict=True):
         cos = np.clip(

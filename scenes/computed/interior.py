@@ -31,7 +31,8 @@ WINDOW = Box(
 )  # a hole in the back wall, with the panes at its far side
 DOOR = Box((-2.15, 0, 4.6), (-1.3, 2.1, 4.6))
 CELLAR = Box((-3.3, 0, 4.6), (-0.9, 2.5, 6.4))  # the unlit room behind the door
-BULB, BULB_RADIUS = rgb(1.95, 2.0, 3.7), 0.11
+BULB = rgb(1.95, 2.0, 3.7)
+BULB_RADIUS = 0.11
 
 SKYLIGHT = rgb(900, 1050, 1300)  # the window as the room sees it, cd/m^2
 WALLS = rgb(13, 11.5, 10)  # the walls as they see one another, cd/m^2
@@ -142,7 +143,8 @@ def through_door(P: Points, d: Points, w: Points) -> Points:
 def hang_lamp(E: Points, d: Points, pixel: float, lamp: float) -> Points:
     """Return E with the lamp before it: a globe, brightest in the middle, on its cord."""
     across, above, z = BULB - EYE
-    x, y = d[0] * z - across, d[1] * z - above
+    x = d[0] * z - across
+    y = d[1] * z - above
     away = np.hypot(x, y) / BULB_RADIUS
     globe = 15 + lamp * LAMPLIGHT * (
         0.6 + 0.4 * np.sqrt(np.maximum(1 - away**2, 0))
@@ -166,7 +168,8 @@ def leave(P: Points, d: Points, box: Box) -> tuple[Points, NDArray[np.int_]]:
 def trace(d: Points, pixel: float, sun: float, lamp: float) -> Points:
     """Return E (3, N) of the room along lines of sight, `pixel` wide at z = 1."""
     t, face = leave(EYE, d, ROOM)
-    P, w = EYE + t * d, pixel * t
+    P = EYE + t * d
+    w = pixel * t
     window, door = ((face == BACK) & (inside(P, hole) > 0) for hole in (WINDOW, DOOR))
     parts: list[tuple[Mask, Callable[..., Points]]]
     parts = [

@@ -53,12 +53,12 @@ def backlight(shape: tuple[int, int] = SHAPE) -> F32:
     )
     hills = within(-0.18 + 0.04 * np.sin(5 * x + 1) + 0.015 * np.sin(13 * x) - y, 2 * pixel)
     E = cover(sky, hills, rgb(700, 620, 700) * (0.6 + _texels("grass", x, y, pixel)))
-    u, v = (
-        0.44 + 0.45 * x / 1.0,
-        0.22 - 0.45 * (y - 0.03),
-    )  # the face stands in the middle of the picture
+    # the face stands in the middle of the picture
+    u = 0.44 + 0.45 * x / 1.0
+    v = 0.22 - 0.45 * (y - 0.03)
     portrait = shade * look_up("astronaut", u, v, np.full(len(x), 0.45 * pixel, np.float32))
-    head, neck = _ellipse(x, y - 0.05, 0.27, 0.32), np.minimum(0.12 - np.abs(x), -0.1 - y)
+    head = _ellipse(x, y - 0.05, 0.27, 0.32)
+    neck = np.minimum(0.12 - np.abs(x), -0.1 - y)
     shoulders = _ellipse(x, y + 0.75, 0.55, 0.47)
     person = np.maximum(np.maximum(head, neck), shoulders)
     E = cover(E, within(person, 2 * pixel), portrait)

@@ -14,7 +14,11 @@ from scenes.models.place import Camera, Light, Material, Place
 from scenes.models.shapes import Mesh, Parts, lathe, placed, put, quad, sheet, tube
 from scenes.models.sun import through
 
-HALF, LENGTH, SPRING, APEX = 3.6, 15.0, 4.3, 7.9  # of the nave, metres
+# of the nave, metres
+HALF = 3.6
+LENGTH = 15.0
+SPRING = 4.3
+APEX = 7.9
 BAY = 3.0
 BAYS = [-1.9 - BAY * k for k in range(4)]  # the middles of its bays along z
 LANCET = Opening(0, 1.2, 1.6, 2.9, 1.1)
@@ -25,7 +29,8 @@ APSE = [
 ]
 ROSE = Opening(0, 1.7, 5.35, 6.2, 0.85, False, True)
 SUN = np.array([0.80, 0.50, 0.26])  # towards the sun
-THICK, SPLAY = 0.38, 0.2
+THICK = 0.38
+SPLAY = 0.2
 FLAME = (26_000.0, 13_500.0, 4_200.0)
 
 

@@ -33,7 +33,8 @@ def coat(cloth: str, hem: float) -> Parts:
 
 def leg(cloth: str, hip: float, swing: float, bend: float) -> Parts:
     """Return a leg and its shoe; `swing` degrees forward at the hip, `bend` at the knee."""
-    a, b = np.radians(swing), np.radians(swing - bend)
+    a = np.radians(swing)
+    b = np.radians(swing - bend)
     top = np.array([hip, 0.9, 0])
     knee = top + 0.43 * np.array([0, -np.cos(a), np.sin(a)])
     ankle = knee + 0.41 * np.array([0, -np.cos(b), np.sin(b)])
@@ -58,7 +59,8 @@ def leg(cloth: str, hip: float, swing: float, bend: float) -> Parts:
 
 def arm(cloth: str, side: int, swing: float, bend: float) -> Parts:
     """Return an arm, its hand, `swing` degrees forward at the shoulder, `bend` at the elbow."""
-    a, b = np.radians(swing), np.radians(swing + bend)
+    a = np.radians(swing)
+    b = np.radians(swing + bend)
     shoulder = np.array([side * 0.19, 1.39, 0])
     elbow = shoulder + 0.29 * np.array([side * 0.14, -np.cos(a), np.sin(a)])
     hand = elbow + 0.27 * np.array([-side * 0.03, -np.cos(b), np.sin(b)])
@@ -92,7 +94,8 @@ def walking(cloth: str, trousers: str) -> Parts:
 
 def umbrella() -> Parts:
     """Return an open umbrella, its grip at the origin."""
-    count, rim = 8, 0.56
+    count = 8
+    rim = 0.56
     angle = np.linspace(0, -2 * np.pi, 65)
     sag = 0.05 * np.abs(np.sin(angle * count / 2))
     s = np.linspace(0, 1, 12)

@@ -90,7 +90,8 @@ def votives() -> Parts:
     rng = np.random.default_rng(11)
     parts: Parts = []
     for row in range(4):
-        y, z = 0.78 + 0.13 * row, -0.17 * row
+        y = 0.78 + 0.13 * row
+        z = -0.17 * row
         parts.append(("iron", box((-0.5, y - 0.02, z - 0.06), (0.5, y, z + 0.06), bevel=0.004)))
         for x in np.linspace(-0.42, 0.42, 8):
             at = (x + rng.uniform(-0.01, 0.01), y, z)

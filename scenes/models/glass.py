@@ -9,9 +9,15 @@ from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
 
 Float = NDArray[np.float64]
-RUBY, COBALT, AZURE = (0.62, 0.015, 0.02), (0.01, 0.035, 0.5), (0.06, 0.26, 0.72)
-EMERALD, GOLD, AMBER = (0.02, 0.3, 0.07), (0.95, 0.6, 0.08), (0.85, 0.3, 0.03)
-PEARL, VIOLET, SKIN = (0.8, 0.82, 0.75), (0.2, 0.03, 0.34), (0.85, 0.55, 0.36)
+RUBY = (0.62, 0.015, 0.02)
+COBALT = (0.01, 0.035, 0.5)
+AZURE = (0.06, 0.26, 0.72)
+EMERALD = (0.02, 0.3, 0.07)
+GOLD = (0.95, 0.6, 0.08)
+AMBER = (0.85, 0.3, 0.03)
+PEARL = (0.8, 0.82, 0.75)
+VIOLET = (0.2, 0.03, 0.34)
+SKIN = (0.85, 0.55, 0.36)
 
 
 def cells(at: Float, points: Float) -> tuple[NDArray[np.int_], Float]:
@@ -76,7 +82,8 @@ def medallion(
 ) -> tuple[Float, Float]:
     """Return a window with a round picture in it: petals, a ring, and a heart of pale glass."""
     d = at - np.array(middle)
-    r, angle = np.hypot(d[..., 0], d[..., 1]) / radius, np.arctan2(d[..., 1], d[..., 0])
+    r = np.hypot(d[..., 0], d[..., 1]) / radius
+    angle = np.arctan2(d[..., 1], d[..., 0])
     petals = 8 if warm else 6
     turn = (angle / (2 * np.pi) * petals + 0.5) % petals
     piece = (
@@ -102,7 +109,8 @@ def rose(seed: int, *, size: int = 512, petals: int = 12) -> Float:
     """Return T of a round window: stone tracery around an eye, petals, and roundels at the rim."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[:size, :size] * 2 / size - 1
-    r, angle = np.hypot(y, x), np.arctan2(x, -y)
+    r = np.hypot(y, x)
+    angle = np.arctan2(x, -y)
     index, lead = cells(np.stack([y, x], axis=2), rng.uniform(-1, 1, (420, 2)))
     turn = (angle / (2 * np.pi) * petals) % petals
     T = np.where(

@@ -18,7 +18,10 @@ from scenes.models.shapes import (
     turned,
 )
 
-LEFT, RIGHT, END = -3.6, 3.6, -34.0  # the fronts of the houses, and where the street ends, metres
+# the fronts of the houses, and where the street ends, metres
+LEFT = -3.6
+RIGHT = 3.6
+END = -34.0
 
 
 ALLEY = (-7.3, -5.0)  # z of its two corners, on the left
@@ -28,7 +31,8 @@ def house(width: float, height: float, openings: list[Opening], coat: str) -> Pa
     """Return the front of a house from x = 0 to its width, seen from +z: wall, frames, sills, mouldings."""
     parts: Parts = [(coat, wall((0, width), (0, height), openings, 0.22, 0.02))]
     for each in openings:
-        a, b = each.middle - each.width / 2, each.middle + each.width / 2
+        a = each.middle - each.width / 2
+        b = each.middle + each.width / 2
         upper = each.spring + each.rise
         if each.sill > 0.3:
             parts.append(
@@ -75,7 +79,8 @@ def storeys(width: float, floors: int, *, seed: int) -> tuple[list[Opening], lis
     count = max(int(width // 1.75), 1)
     at = (np.arange(count) + 0.5) * width / count
     arched = bool(seed % 2)
-    found, behind = [], []
+    found = []
+    behind = []
     for k, u in enumerate(at):
         door = k == seed % count
         found.append(
@@ -110,10 +115,8 @@ def front(side: int, start: float, width: float, floors: int, coat: str, *, seed
     parts: Parts = []
     # A wall has its openings side by side; storeys are walls one upon another.
     for floor in range(floors):
-        low, high = (
-            (0 if floor == 0 else 0.5 + 2.95 * floor),
-            (height if floor == floors - 1 else 0.5 + 2.95 * (floor + 1)),
-        )
+        low = 0 if floor == 0 else 0.5 + 2.95 * floor
+        high = height if floor == floors - 1 else 0.5 + 2.95 * (floor + 1)
         parts.append(
             (coat, wall((0, width), (low, high), [column[floor] for column in columns], 0.22, 0.02))
         )
@@ -143,7 +146,8 @@ def front(side: int, start: float, width: float, floors: int, coat: str, *, seed
 
 def door(opening: Opening) -> Parts:
     """Return what makes a door of a plate of paint: panels, a knob, a step."""
-    a, b = opening.middle - opening.width / 2, opening.middle + opening.width / 2
+    a = opening.middle - opening.width / 2
+    b = opening.middle + opening.width / 2
     parts: Parts = [("step", box((a - 0.1, 0, -0.1), (b + 0.1, 0.14, 0.3), bevel=0.02))]
     for x in (a + 0.1, opening.middle + 0.05):
         for y, tall in ((0.3, 0.62), (1.05, 0.85)):
@@ -158,7 +162,8 @@ def alley() -> Parts:
     through.
     """
     a, b = ALLEY
-    back, far = a - 3.2, LEFT - 9
+    back = a - 3.2
+    far = LEFT - 9
     parts: Parts = [
         ("soot", quad((far, 0, back), (LEFT, 0, back), (LEFT, 3.3, back), (far, 3.3, back))),
         ("soot", quad((LEFT, 0, b), (far, 0, b), (far, 3.3, b), (LEFT, 3.3, b))),

@@ -38,7 +38,8 @@ def goods(size: int = 256) -> Float:
     for row in range(4):
         edge = 0.05
         while edge < 0.93:
-            wide, tall = rng.uniform(0.02, 0.06), rng.uniform(0.06, 0.18)
+            wide = rng.uniform(0.02, 0.06)
+            tall = rng.uniform(0.06, 0.18)
             top = 0.26 + 0.23 * row
             thing = (x > edge) & (x < edge + wide) & (y < top) & (y > top - tall)
             back[thing] = rng.uniform(0.08, 0.9, 3) * (1.1 - 0.15 * row)

@@ -5,12 +5,18 @@ import numpy as np
 from scenes.models import tools
 from scenes.models.shapes import Parts, ball, box, placed, put, turned
 
-BACK, LEFT = -4.4, -3.0  # the walls at which it stands, metres
+# the walls at which it stands, metres
+BACK = -4.4
+LEFT = -3.0
 
 
 def bench() -> Parts:
     """Return the bench before the window, with the work and the tools on it."""
-    x0, x1, z0, z1, y = -2.35, 1.05, BACK + 0.1, BACK + 0.86, 0.88
+    x0 = -2.35
+    x1 = 1.05
+    z0 = BACK + 0.1
+    z1 = BACK + 0.86
+    y = 0.88
     parts: Parts = []
     for k in range(4):
         z = z0 + k * (z1 - z0) / 4
@@ -80,7 +86,8 @@ def toolboard() -> Parts:
         parts += put(made, (x, 1.2, z + 0.09))
     parts.append(("oak", box((1.25, 0, BACK), (2.75, 0.82, BACK + 0.5), bevel=0.012)))
     for k in range(6):
-        x, y = 1.32 + 0.48 * (k % 3), 0.1 + 0.36 * (k // 3)
+        x = 1.32 + 0.48 * (k % 3)
+        y = 0.1 + 0.36 * (k // 3)
         parts.append(
             ("beech", box((x, y, BACK + 0.5), (x + 0.4, y + 0.3, BACK + 0.515), bevel=0.006))
         )
@@ -91,12 +98,14 @@ def toolboard() -> Parts:
 def shelves() -> Parts:
     """Return the shelves on the left wall, and the timber that leans beside them."""
     rng = np.random.default_rng(4)
-    x, parts = LEFT, []
+    x = LEFT
+    parts = []
     for y in (0.55, 1.0, 1.45, 1.9):
         parts.append(("pine", box((x, y - 0.03, -3.5), (x + 0.34, y, -1.25))))
         z = -3.42
         while z < -1.4:
-            kind, radius = rng.integers(0, 4), rng.uniform(0.045, 0.085)
+            kind = rng.integers(0, 4)
+            radius = rng.uniform(0.045, 0.085)
             paint = ("red", "blue", "cream", "green", "amber")[rng.integers(0, 5)]
             if kind == 0:
                 wide = rng.uniform(0.16, 0.3)

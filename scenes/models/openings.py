@@ -47,7 +47,8 @@ def top(opening: Opening, u: Float) -> Float:
         return opening.spring + opening.rise * np.sqrt(1 - s**2)
     # An arc about a centre on the springing line, beyond the middle: it meets its mirror image in a
     # point.
-    half, rise = opening.width / 2, max(opening.rise, 1e-9)
+    half = opening.width / 2
+    rise = max(opening.rise, 1e-9)
     radius = (half**2 + rise**2) / (2 * half)
     x = s * half + radius - half
     arch = np.sqrt(np.maximum(radius**2 - x**2, 0)) if opening.rise else np.zeros_like(x)
@@ -87,7 +88,10 @@ def wall(
     The openings are `splay` wider in front than behind.
     """
     front = [opening.widened(splay) for opening in sorted(openings)]
-    pieces, at, floor, ceiling = [], width[0], height[0], height[1] + TUCK
+    pieces = []
+    at = width[0]
+    floor = height[0]
+    ceiling = height[1] + TUCK
     for wide, narrow in zip(front, sorted(openings), strict=True):
         u = across(wide)
         pieces.append(flat(np.array([at - TUCK, u[0] + TUCK]), floor, ceiling))
@@ -106,7 +110,8 @@ def flat(u: Float, low: Float | float, high: Float | float) -> Mesh:
 
 def reveal(front: Opening, back: Opening, thick: float) -> Mesh:
     """Return the sides of an opening, from its edge in front to its edge behind."""
-    a, b = outline(front), outline(back)
+    a = outline(front)
+    b = outline(back)
     ring = np.stack(
         [np.column_stack([b, np.full(len(b), -thick)]), np.column_stack([a, np.zeros(len(a))])]
     )
@@ -124,7 +129,8 @@ def pane(opening: Opening, z: float = 0.0) -> Mesh:
     edge = np.stack(
         [np.column_stack([u, bottom(opening, u)]), np.column_stack([u, top(opening, u)])]
     )
-    low, high = edge.reshape(-1, 2).min(axis=0), edge.reshape(-1, 2).max(axis=0)
+    low = edge.reshape(-1, 2).min(axis=0)
+    high = edge.reshape(-1, 2).max(axis=0)
     return sheet(
         np.concatenate([edge, np.full((2, len(u), 1), z)], axis=2), (edge - low) / (high - low)
     )

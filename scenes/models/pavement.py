@@ -28,7 +28,8 @@ def lamp_post(at: tuple[float, float, float]) -> Parts:
         ("iron", lathe(post, sides=20)),
         ("iron", tube([(-0.3, 3.02, 0), (0, 3.02, 0), (0.3, 3.02, 0)], 0.016, sides=8)),
     ]
-    low, high = 0.13, 0.21
+    low = 0.13
+    high = 0.21
     for sx in (-1, 1):
         for sz in (-1, 1):
             parts.append(

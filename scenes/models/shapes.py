@@ -49,11 +49,16 @@ def by_material(parts: Parts) -> dict[str, Mesh]:
 
 def turned(degrees: float, axis: str = "y") -> Float:
     """Return the rotation (3, 3) about an axis, counterclockwise as seen against it."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    c = np.cos(np.radians(degrees))
+    s = np.sin(np.radians(degrees))
     k = "xyz".index(axis)
     R = np.eye(3)
-    a, b = (k + 1) % 3, (k + 2) % 3
-    R[a, a], R[a, b], R[b, a], R[b, b] = c, -s, s, c
+    a = (k + 1) % 3
+    b = (k + 2) % 3
+    R[a, a] = c
+    R[a, b] = -s
+    R[b, a] = s
+    R[b, b] = c
     return R
 
 
@@ -111,7 +116,10 @@ def sheet(P: Places, uv: ArrayLike | None = None, *, sharp: bool = False) -> Mes
         return merge(sheet(p, q) for p, q in zip(square, places, strict=True))
     m, n = P.shape[:2]
     k = np.arange(m * n).reshape(m, n)
-    a, b, c, d = k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]
+    a = k[:-1, :-1]
+    b = k[:-1, 1:]
+    c = k[1:, 1:]
+    d = k[1:, :-1]
     faces = np.concatenate([np.stack(t, axis=2).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
     return Mesh(P.reshape(-1, 3), smooth(P.reshape(-1, 3), faces), uv.reshape(-1, 2), faces)
 

@@ -9,7 +9,8 @@ from scenes.models.shapes import Parts, box, lathe, placed, put, sheet, tube
 
 def shop(start: float) -> Parts:
     """Return a shop on the right: a wide lit window with goods on its sill, an awning and a sign."""
-    u0, width = 0.3, 3.0
+    u0 = 0.3
+    width = 3.0
     parts: Parts = [
         (
             "shop front",

@@ -52,7 +52,8 @@ def through(
     normal = np.cross(along, up)
     t = ((middle - eye) @ normal) / (ray @ normal)
     hit = eye + t[..., None] * ray - corner
-    u, v = hit @ along / (along @ along), hit @ up / (up @ up)
+    u = hit @ along / (along @ along)
+    v = hit @ up / (up @ up)
     at = np.stack([(1 - v) * T.shape[0] - 0.5, u * T.shape[1] - 0.5])
     inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
     slide = np.stack(

@@ -205,7 +205,8 @@ def stool() -> Parts:
 
 def shaving(rng: np.random.Generator) -> Parts:
     """Return a curl of wood as a plane leaves it."""
-    turns, radius = rng.uniform(0.7, 2.2), rng.uniform(0.012, 0.026)
+    turns = rng.uniform(0.7, 2.2)
+    radius = rng.uniform(0.012, 0.026)
     a = np.linspace(0, 2 * np.pi * turns, 18)
     r = radius * (1 + 0.12 * a / 6)
     along = rng.uniform(0.0, 0.05) * a / a[-1]

@@ -15,7 +15,10 @@ from scenes.models.shapes import Parts, ball, box, placed, put, quad, sheet, tub
 from scenes.models.sun import through
 from scenes.models.yard import sky, yard
 
-RIGHT, CEILING, THICK = 3.0, 2.85, 0.32  # metres; the wall's thickness
+# metres; the wall's thickness
+RIGHT = 3.0
+CEILING = 2.85
+THICK = 0.32
 WINDOW = Opening(-0.55, 2.5, 1.02, 2.32, 0.16, False)
 SUN = (-0.50, 0.62, -0.52)  # towards the sun
 SUNLIGHT = (88_000.0, 80_000.0, 66_000.0)
@@ -72,8 +75,10 @@ def shell() -> Parts:
 
 def frame() -> Parts:
     """Return the window's frame and bars, its sill, and what stands on it."""
-    z, parts = BACK - 0.22, []
-    left, right = WINDOW.middle - WINDOW.width / 2, WINDOW.middle + WINDOW.width / 2
+    z = BACK - 0.22
+    parts = []
+    left = WINDOW.middle - WINDOW.width / 2
+    right = WINDOW.middle + WINDOW.width / 2
     for k, x in enumerate(np.linspace(left + 0.03, right - 0.03, 5)):
         thick = 0.035 if k in (0, 2, 4) else 0.014
         parts.append(("sash", box((x - thick, 1.02, z - 0.025), (x + thick, 2.5, z + 0.025))))
@@ -88,7 +93,8 @@ def frame() -> Parts:
     pot = [("clay", tools.tin(0.13, 0.07, "clay")[0][1])]
     rng = np.random.default_rng(2)
     for k in range(46):
-        a, r = rng.uniform(0, 2 * np.pi), rng.uniform(0.02, 0.16)
+        a = rng.uniform(0, 2 * np.pi)
+        r = rng.uniform(0.02, 0.16)
         tip = np.array([r * np.cos(a), 0.14 + rng.uniform(0.04, 0.26), 0.6 * r * np.sin(a)])
         leaf = np.array(
             [[(-0.02, 0, 0), (0.02, 0, 0)], [(-0.015, 0.06, 0.02), (0.015, 0.06, 0.02)]]
@@ -104,7 +110,8 @@ def frame() -> Parts:
 def panes(size: int = 32) -> NDArray[np.float64]:
     """Return the radiance of the window as the room knows it: sky above, and below it the yard."""
     v = np.linspace(1, 0, size)[:, None, None]
-    above, below = np.array([3800.0, 4600.0, 5800.0]), np.array([2700.0, 2700.0, 1700.0])
+    above = np.array([3800.0, 4600.0, 5800.0])
+    below = np.array([2700.0, 2700.0, 1700.0])
     return np.broadcast_to(np.where(v > 0.45, above, below), (size, size, 3)).copy()
 
 
@@ -175,11 +182,10 @@ def place() -> Place:
         "irradiance": {"type": "rgb", "value": list(SUNLIGHT)},
     }
     air: Material = {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}}
-    left, upper = WINDOW.middle - WINDOW.width / 2, WINDOW.spring + WINDOW.rise
-    corner, sides = (
-        (left, WINDOW.sill, BACK - THICK),
-        ((WINDOW.width, 0, 0), (0, upper - WINDOW.sill, 0)),
-    )
+    left = WINDOW.middle - WINDOW.width / 2
+    upper = WINDOW.spring + WINDOW.rise
+    corner = (left, WINDOW.sill, BACK - THICK)
+    sides = ((WINDOW.width, 0, 0), (0, upper - WINDOW.sill, 0))
     beam = through(np.ones((4, 4, 3)), corner, *sides, SUN, SUNLIGHT)
     lights = {
         "yard": Light(

@@ -68,7 +68,8 @@ def yard() -> Parts:
         at = (x + rng.uniform(-0.5, 0.5), 0.7 + rng.uniform(0, 0.9), -16.5 - rng.uniform(0, 3))
         parts.append(("hill", ball(at, (1.5, 1.3 + rng.uniform(0, 0.9), 1.3), sides=14)))
     for k in range(60):
-        x, z = rng.uniform(-7, -1.2), -13.7 + rng.uniform(-0.2, 0.25)
+        x = rng.uniform(-7, -1.2)
+        z = -13.7 + rng.uniform(-0.2, 0.25)
         parts.append(
             (
                 ("blossom", "geranium", "sunflower")[k % 3],

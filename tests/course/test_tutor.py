@@ -47,7 +47,7 @@ def failed(task, **details):
     return Check(task, "test_it", "It works", Fraction(0), Fraction(1), **fields)
 
 
-def asked(task, text, result, options=HERE):
+def dialogue_about(task, text, result, options=HERE):
     """Return the questions and the texts of the whole dialogue."""
     steps = list(tutor.ask(PLAN.task(task), code_of(task, text), result, options))
     forms = [step for step in steps if isinstance(step, Prediction)]
@@ -55,11 +55,11 @@ def asked(task, text, result, options=HERE):
 
 
 @cache
-def asked_about(name):
+def dialogue_of(name):
     """Return the dialogue of a student whose function is the mistake."""
     known = KNOWN[name]
     result = result_of(known.task, failed(known.task), sentence=known.sentence)
-    return asked(known.task, source_of(known.task, known.source), result)
+    return dialogue_about(known.task, source_of(known.task, known.source), result)
 
 
 def value(code, task, function):
@@ -90,7 +90,7 @@ def test_at_least_twenty_mistakes_have_questions_and_each_has_three():
 @pytest.mark.parametrize("name", KNOWN)
 def test_questions_lead_from_a_right_value_to_wrong_ones_and_tell_both_truly(name):
     known = KNOWN[name]
-    forms, texts = asked_about(name)
+    forms, texts = dialogue_of(name)
     solution = plan.function(PLAN.task(known.task))
     assert [form.code for form in forms] == [question.code for question in known.questions]
     is_wrong = []
@@ -117,7 +117,7 @@ def test_each_reason_is_one_sentence_of_the_assignment(name):
 @pytest.mark.parametrize("name", KNOWN)
 def test_the_line_that_is_shown_is_one_in_which_the_mistake_differs_from_the_solution(name):
     known = KNOWN[name]
-    closing = asked_about(name)[1][-1]
+    closing = dialogue_of(name)[1][-1]
     assert known.sentence.split("'")[0][:20] in closing.replace("&#x27;", "'").replace("&gt;", ">")
     shown = re.search("<pre>(.*)</pre>", closing, re.DOTALL)
     if shown is None:
@@ -132,7 +132,7 @@ def test_the_line_that_is_shown_is_one_in_which_the_mistake_differs_from_the_sol
 
 @pytest.mark.grading
 def test_the_line_is_found_for_most_mistakes_in_their_own_code():
-    closings = [asked_about(name)[1][-1] for name in KNOWN]
+    closings = [dialogue_of(name)[1][-1] for name in KNOWN]
     assert sum("<pre>" in closing for closing in closings) > len(KNOWN) / 2
 
 
@@ -146,14 +146,16 @@ def hat(n=256):
 """
     known = KNOWN["hat_ends_count"]
     result = result_of("hat", failed("hat"), sentence=known.sentence)
-    assert "<pre>levels.append(min(z + 1, n - z))</pre>" in asked("hat", text, result)[1][-1]
+    assert (
+        "<pre>levels.append(min(z + 1, n - z))</pre>" in dialogue_about("hat", text, result)[1][-1]
+    )
 
 
 def test_a_function_that_is_right_by_now_gets_no_question():
     known = KNOWN["hat_ends_count"]
     example = Counterexample("hat(4)", "[0.5, 1, 1, 0.5]", "[0, 1, 1, 0]")
     result = result_of("hat", failed("hat", counterexample=example), sentence=known.sentence)
-    forms, texts = asked("hat", source_of("hat", "core.weights.hat"), result)
+    forms, texts = dialogue_about("hat", source_of("hat", "core.weights.hat"), result)
     assert forms == [] and "is right now" in texts[0]
 
 
@@ -165,13 +167,15 @@ def test_there_is_nothing_to_ask_about_passed_hidden_and_unwritten_checks():
     )
     assert tutor.tasks_to_ask(result_of("hat", passed, hidden, stub)) == []
     assert tutor.tasks_to_ask(result_of("hat", passed, failed("hat"))) == ["hat"]
-    forms, texts = asked("hat", "def hat(n): return 1", result_of("hat", passed, hidden))
+    forms, texts = dialogue_about("hat", "def hat(n): return 1", result_of("hat", passed, hidden))
     assert forms == [] and "nothing to ask" in texts[0]
 
 
 def test_an_endless_function_gets_a_message_and_no_question():
     late = failed("hat", outcome="no answer", kind="late", message="hat took longer than 10 s")
-    forms, texts = asked("hat", "def hat(n):\n    while True: pass", result_of("hat", late))
+    forms, texts = dialogue_about(
+        "hat", "def hat(n):\n    while True: pass", result_of("hat", late)
+    )
     assert forms == [] and "hat took longer than 10 s" in texts[0]
 
 
@@ -185,14 +189,14 @@ def hat(n=256):
     return np.ones(n)
 """
     practice = replace(HERE, tier="practice")
-    forms, texts = asked("hat", text, result_of("hat", failed("hat")), practice)
+    forms, texts = dialogue_about("hat", text, result_of("hat", failed("hat")), practice)
     assert 1 <= len(forms) <= 3
-    assert any("took longer than 0.5 s" in said for said in texts)
+    assert any("took longer than 0.5 s" in text for text in texts)
 
 
 def test_a_function_that_raises_an_error_is_asked_about_once():
     text = "def hat(n=256):\n    return [1][n]\n"
-    forms, texts = asked("hat", text, result_of("hat", failed("hat")))
+    forms, texts = dialogue_about("hat", text, result_of("hat", failed("hat")))
     assert len([form for form in forms if form.code]) == 1
     assert "IndexError" in texts[0] and "return [1][n]" in texts[0]
 
@@ -210,7 +214,7 @@ def test_other_failures_are_asked_about_with_their_counterexample_and_their_sent
     task = PLAN.task("shrink")
     code = code_of("shrink", CUT)
     result = last(grader.check_steps(code, homework._replace(tasks=(task,)), HERE))
-    forms, _ = asked("shrink", CUT, result)
+    forms, _ = dialogue_about("shrink", CUT, result)
     simple, wrong, which = forms
     example = next(check.counterexample for check in result.checks if check.counterexample)
     scope = {}
@@ -237,7 +241,7 @@ def test_a_variant_of_a_task_is_not_asked_about_in_the_words_of_another():
 
 def test_text_of_a_student_is_escaped():
     text = "def hat(n=256):\n    raise ValueError('<script>alert(1)</script>')\n"
-    _, texts = asked("hat", text, result_of("hat", failed("hat")))
+    _, texts = dialogue_about("hat", text, result_of("hat", failed("hat")))
     assert "alert(1)" in "".join(texts) and "<script" not in "".join(texts)
 
 

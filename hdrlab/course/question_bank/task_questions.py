@@ -59,8 +59,8 @@ class SmallCall:
 
     def answer(self, function: Callable[..., Any]) -> str:
         """Return what a function answers, as text; "" if it fails."""
-        came = misconceptions.call_quietly(function, self.args, self.kwargs)
-        return "" if came is None else self.read(came)
+        answer = misconceptions.call_quietly(function, self.args, self.kwargs)
+        return "" if answer is None else self.read(answer)
 
 
 def number(answer: Any, unit: str = "") -> str:
@@ -95,8 +95,8 @@ VARIANCES = np.array([5.0, 60.0, 150.0])
 SMALL_CALLS = (
     SmallCall(
         task="ev",
-        ask="A lens at f/8 is open for 1/60 s at ISO 400. Which exposure value has the scene that "
-        "this exposes correctly, at ISO 100?",
+        ask="A lens at f/8 is open for 1/60 s at ISO 400. What is the exposure value, at ISO 100, "
+        "of a scene that these settings expose correctly?",
         args=(8.0, 1 / 60),
         kwargs={"S": 400},
         read=lambda answer: f"EV {number(answer)}",
@@ -157,8 +157,8 @@ SMALL_CALLS = (
     ),
     SmallCall(
         task="log_average",
-        ask="An image has four pixels of the luminance 1, 10, 100 and 1000. What is about its log "
-        "average?",
+        ask="An image has four pixels of the luminance 1, 10, 100 and 1000. What is its log "
+        "average, approximately?",
         args=(np.array([[1.0, 10.0], [100.0, 1000.0]], np.float32),),
     ),
     SmallCall(
@@ -206,7 +206,7 @@ SMALL_CALLS = (
     SmallCall(
         task="line",
         ask="A camera's noise has the variance 5 in the dark, 60 at the mean 100 and 150 at the "
-        "mean 300. Which slope has the line of variance over mean, fitted with weights 1 / V^2?",
+        "mean 300. What is the slope of the line of variance over mean, fitted with weights 1 / V^2?",
         args=(MEAN_COUNTS, VARIANCES),
     ),
 )
@@ -269,18 +269,18 @@ def value_question(call: SmallCall, mistakes: Sequence[KnownMistake]) -> ChoiceQ
 
 def diagnosis_question(call: SmallCall, mistakes: Sequence[KnownMistake]) -> ChoiceQuestion:
     """Ask which mistake explains a wrong answer to a call."""
-    made = random.Random(call.task).choice(mistakes)
+    shown = random.Random(call.task).choice(mistakes)
     right = call.answer(solution(call.task))
-    text = f"{call.ask} A program answers {call.answer(made.function)}. What is wrong with it?"
+    text = f"{call.ask} A program answers {call.answer(shown.function)}. What is wrong with it?"
     wrong = [
         (mistake.sentence, f"Then the answer would be {call.answer(mistake.function)}.")
         for mistake in mistakes
-        if mistake is not made
+        if mistake is not shown
     ]
     nothing = ("Nothing: this is the right answer.", f"The right answer is {right}.")
     because = f"The right answer is {right}."
     return choices(
-        f"task-diagnosis-{call.task}", text, (made.sentence, ""), [*wrong, nothing], because
+        f"task-diagnosis-{call.task}", text, (shown.sentence, ""), [*wrong, nothing], because
     )
 
 
@@ -333,11 +333,11 @@ def run_checks(task: str, function: Callable[..., Any]) -> dict[str, bool]:
             "subject": inprocess.Subject({task: function}),
             "rng": np.random.default_rng(PUBLIC_SEED),
         }
-        wanted = inspect.signature(check).parameters
+        parameters = inspect.signature(check).parameters
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             try:
-                check(**{fixture: fixtures[fixture] for fixture in wanted})
+                check(**{fixture: fixtures[fixture] for fixture in parameters})
                 outcomes[name] = True
             except Exception:  # whatever a wrong function leads to, it fails the check
                 outcomes[name] = False
@@ -362,9 +362,9 @@ def picture_questions() -> Iterator[ChoiceQuestion]:
     for task, names in PICTURES.items():
         known = {mistake.name: mistake for mistake in mistakes_of(task)}
         mistakes = [known[name] for name in names]
-        asked = mistakes[0]
+        mistake_to_find = mistakes[0]
         versions = [
-            (asked.function, ""),
+            (mistake_to_find.function, ""),
             *((mistake.function, mistake.sentence) for mistake in mistakes[1:]),
             (solution(task), "This is the image of the right solution."),
         ]
@@ -377,7 +377,7 @@ def picture_questions() -> Iterator[ChoiceQuestion]:
         labels = tuple(f"Image {letter}" for letter in "ABCD")
         text = (
             f"Four versions of the task {task} made these images of one room. One version has a "
-            f"mistake, of which hdrlab says: \u201c{asked.sentence}\u201d Which image is it?"
+            f"mistake, of which hdrlab says: \u201c{mistake_to_find.sentence}\u201d Which image is it?"
         )
         yield ChoiceQuestion(
             name=f"task-picture-{task}",
@@ -385,7 +385,7 @@ def picture_questions() -> Iterator[ChoiceQuestion]:
             text=text,
             because="hdrlab ran all four versions.",
             labels=labels,
-            right=[function for function, _ in versions].index(asked.function),
+            right=[function for function, _ in versions].index(mistake_to_find.function),
             images=tuple(Image(content, alt) for content, alt in zip(images, labels, strict=True)),
             misconceptions=tuple(sentence for _, sentence in versions),
         )

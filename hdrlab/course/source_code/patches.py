@@ -2,7 +2,7 @@
 
 A wrong function is the right one with a few tokens changed, such as `log2` in place of `log`. Where
 the wrong tokens stand in a line of the student's code, the right ones are put in their place. The
-caller runs each changed source: only if it answers rightly, the lines are found.
+caller runs each changed source: only if it gives the right answers, the lines count as found.
 """
 
 import io
@@ -54,18 +54,21 @@ def edits(wrong: str, right: str) -> list[Edit]:
         if kind == "equal":
             continue
         if kind == "insert":  # nothing to look for: take a token on either side along
-            i, j, k, m = max(i - 1, 0), j + 1, max(k - 1, 0), m + 1
+            i = max(i - 1, 0)
+            j += 1
+            k = max(k - 1, 0)
+            m += 1
         if spans and i < spans[-1][1]:  # two inserts share a token
             spans[-1][1] = j
             spans[-1][3] = m
         else:
             spans.append([i, j, k, m])
-    found = []
+    short_edits = []
     for i, j, k, m in spans:
         length = max(j - i, m - k)
         if j > i and length <= MAX_EDIT_TOKENS:
-            found.append(Edit(tuple(before[i:j]), tuple(after[k:m])))
-    return found
+            short_edits.append(Edit(tuple(before[i:j]), tuple(after[k:m])))
+    return short_edits
 
 
 def edit(wrong: str, right: str) -> Edit:
@@ -76,7 +79,7 @@ def edit(wrong: str, right: str) -> Edit:
     )
 
 
-def wrong_lines(source: str, found: list[Edit], is_right: Callable[[str], bool]) -> list[int]:
+def wrong_lines(source: str, candidates: list[Edit], is_right: Callable[[str], bool]) -> list[int]:
     r"""Return the numbers of the lines whose change makes a source right, counted from 1.
 
     Single lines are tried first, and then all lines together, of which those that matter remain. The
@@ -85,7 +88,7 @@ def wrong_lines(source: str, found: list[Edit], is_right: Callable[[str], bool])
     Parameters
     ----------
     source : str
-    found : list of Edit
+    candidates : list of Edit
         The edits that may be applied.
     is_right : function
         Whether a changed source is right. At most `MAX_TRIALS` sources are tried.
@@ -95,7 +98,7 @@ def wrong_lines(source: str, found: list[Edit], is_right: Callable[[str], bool])
     >>> wrong_lines("a = 1\nb = log2(a)", [Edit(("log2",), ("log",))], lambda text: "log(" in text)
     [2]
     """
-    texts = _changed_texts(source, found)
+    texts = _changed_texts(source, candidates)
     trials = 0
     for number, alternatives in texts.items():
         for text in alternatives:
@@ -122,7 +125,7 @@ def _with_lines(source: str, texts: Mapping[int, str]) -> str:
     return "\n".join(lines)
 
 
-def _changed_texts(source: str, found: list[Edit]) -> dict[int, list[str]]:
+def _changed_texts(source: str, candidates: list[Edit]) -> dict[int, list[str]]:
     """Return how each line may read after a change, the last one with all edits in it."""
     lines: dict[int, list[tokenize.TokenInfo]] = {}
     for token in _tokens(source):
@@ -132,22 +135,22 @@ def _changed_texts(source: str, found: list[Edit]) -> dict[int, list[str]]:
     for number, tokens in lines.items():
         if tokens[0].string == "def":  # a signature is given
             continue
-        choices = list(_choices(tokens, found))
+        choices = list(_choices(tokens, candidates))
         if choices:
             texts[number] = list(dict.fromkeys(_replace(tokens, choice) for choice in choices))
     return texts
 
 
 def _choices(
-    tokens: list[tokenize.TokenInfo], found: list[Edit]
+    tokens: list[tokenize.TokenInfo], candidates: list[Edit]
 ) -> Iterator[list[tuple[Edit, int]]]:
     """Yield one edit at one place of a line, one edit at all its places, and at last all edits."""
-    places = [(edit, at) for edit in found for at in _places(tokens, edit.wrong)]
+    places = [(edit, at) for edit in candidates for at in _places(tokens, edit.wrong)]
     if not places:
         return
     for place in places:
         yield [place]
-    for edit in found:
+    for edit in candidates:
         of_edit = [place for place in places if place[0] == edit]
         if of_edit:
             yield of_edit

@@ -194,7 +194,9 @@ def decode_half(bits: Array) -> F32:
     [1.0, -2.5, 5.960464477539063e-08]
     """
     bits = np.asarray(bits, np.int64)
-    sign, e, m = 1 - 2 * (bits >> 15), bits >> 10 & 31, bits & 1023
+    sign = 1 - 2 * (bits >> 15)
+    e = bits >> 10 & 31
+    m = bits & 1023
     value = np.where(e > 0, 1024 + m, 2 * m) * 2.0 ** (e - 25)
     value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
     return (sign * value).astype(np.float32)

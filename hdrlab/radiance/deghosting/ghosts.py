@@ -249,7 +249,7 @@ def remove_ghosts(
 def note(result: Ghosts, names: Sequence[str]) -> str:
     """Return a sentence that says how much moved, and which photographs are the references there."""
     if not len(result.references):
-        return "nothing moved: no region contradicts itself by more than noise and edges explain"
+        return "nothing moved: everywhere the photos differ by no more than noise and edges explain"
     numbers, counts = np.unique(result.references, return_counts=True)
     per_frame = ", ".join(
         f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True)

@@ -107,7 +107,8 @@ def bilateral_kernel(
     if not 0 <= at < v.size:
         raise InputError(f"expected a pixel from 0 to {v.size - 1}, got {at}")
     base = bilateral(v[None], sigma_s=sigma_s, sigma_r=sigma_r).mean[0]
-    low, high = float(v.min()), float(v.max())
+    low = float(v.min())
+    high = float(v.max())
     if low == high:
         raise InputError("expected a line with different values, got only equal ones")
     margin = MARGIN_FRACTION * (high - low)

@@ -107,7 +107,8 @@ def pixel_mean(
     n_photos, height, width, n_channels = channels.shape
     channel = n_channels // 2
     response = np.reshape(g, (N_LEVELS, -1))[:, -1 if np.size(g) == N_LEVELS else channel]
-    y, x = int(at[0] * height), int(at[1] * width)
+    y = int(at[0] * height)
+    x = int(at[1] * width)
     lE = np.log(E.reshape(*E.shape[:2], -1)[::step, ::step, channel])
     top = int(CLIPPING_LEVEL * (N_LEVELS - 1)) + 1
     plot = merging.draw_measurements(

@@ -22,9 +22,10 @@ def weights_once(found, *, limit=9.0, tolerance=1e-06, rounds=100):
     for _ in range(rounds):
         errors = square_errors(found, k)
         used = errors <= limit * np.mean(errors[used])
-        k, before = solve_ratio(found, used), k
+        k_before = k
+        k = solve_ratio(found, used)
         yield State(k, used, float(np.mean(square_errors(found, k)[used])))
-        if abs(k - before) < tolerance:
+        if abs(k - k_before) < tolerance:
             return
 
 
@@ -40,9 +41,10 @@ def never_back(found, *, limit=9.0, tolerance=1e-06, rounds=100):
     for _ in range(rounds):
         errors = square_errors(found, k)
         used = used & (errors <= limit * np.mean(errors[used]))
-        k, before = solve_ratio(found, used), k
+        k_before = k
+        k = solve_ratio(found, used)
         yield State(k, used, float(np.mean(square_errors(found, k)[used])))
-        if abs(k - before) < tolerance:
+        if abs(k - k_before) < tolerance:
             return
 
 
@@ -58,7 +60,8 @@ def mean_of_all(found, *, limit=9.0, tolerance=1e-06, rounds=100):
     for _ in range(rounds):
         errors = square_errors(found, k)
         used = errors <= limit * np.mean(errors)
-        k, before = solve_ratio(found, used), k
+        k_before = k
+        k = solve_ratio(found, used)
         yield State(k, used, float(np.mean(square_errors(found, k)[used])))
-        if abs(k - before) < tolerance:
+        if abs(k - k_before) < tolerance:
             return

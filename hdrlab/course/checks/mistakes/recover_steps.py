@@ -29,7 +29,8 @@ def weighted_update(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
         new = new / new[len(w) // 2]
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        change = float(np.max(np.abs(new - f_inv)))
+        f_inv = new
         yield State(f_inv, change)
         if change < tolerance:
             return
@@ -51,7 +52,8 @@ def exponential_start(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
         new = new / new[len(w) // 2]
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        change = float(np.max(np.abs(new - f_inv)))
+        f_inv = new
         yield State(f_inv, change)
         if change < tolerance:
             return
@@ -70,7 +72,8 @@ def empty_left_at_0(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     for _ in range(max_iterations):
         new = np.nan_to_num(means(f_inv))
         new = new / (new[len(w) // 2] or 1)
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        change = float(np.max(np.abs(new - f_inv)))
+        f_inv = new
         yield State(f_inv, change)
         if change < tolerance:
             return
@@ -90,6 +93,7 @@ def one_turn(Z, times, w, *, tolerance=0.0001, max_iterations=200):
     for _ in range(max_iterations):
         new = fill(means(f_inv), w)
         new = new / new[len(w) // 2]
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        change = float(np.max(np.abs(new - f_inv)))
+        f_inv = new
         yield State(f_inv, change)
         return

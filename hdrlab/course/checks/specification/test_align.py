@@ -167,7 +167,8 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     around it.
     """
     E = scene(rng)
-    dy, dx = (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
+    dy = int(rng.choice([-15, 15]))
+    dx = int(rng.choice([-15, 15]))
     answer = get_answer(subject, photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4)
     same(answer[0] - answer[1], [dy, dx], 0, what="the offset at 4 bits")
     answer = get_answer(subject, photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1)

@@ -21,7 +21,8 @@ def test_the_contrast_is_the_mean_distance_from_the_mean(subject, rng):
 
     M is the mean over the histogram, and D the mean of |i - M| over it.
     """
-    low, high = int(rng.integers(20, 80)), int(rng.integers(150, 230))
+    low = int(rng.integers(20, 80))
+    high = int(rng.integers(150, 230))
     block = np.where(rng.random(SHAPE) < 0.3, low, high).astype(float)
     same_contrast(subject, block, what="D of a block with two values")
     same_contrast(subject, np.rint(rng.gamma(3, 15, SHAPE)).clip(4, 240), what="D of a block")

@@ -50,7 +50,8 @@ def test_white_is_no_skin(subject, rng):
     """
     angle = rng.uniform(-1.2, 0.1, 300)
     distance = rng.uniform(0.003, 0.06, 300)
-    r, g = 1 / 3 + distance * np.cos(angle), 1 / 3 + distance * np.sin(angle)
+    r = 1 / 3 + distance * np.cos(angle)
+    g = 1 / 3 + distance * np.sin(angle)
     same_mask(subject, r, g, rng, what="skin, for colors around white")
 
 
@@ -74,7 +75,8 @@ def test_a_picture_of_any_shape_can_be_asked(subject, rng):
 
     Use Z[..., 0] for red, so that the shape does not matter. Black pixels, with R + G + B = 0, are no skin.
     """
-    r, g = rng.uniform(0.36, 0.55, (6, 9)), rng.uniform(0.24, 0.34, (6, 9))
+    r = rng.uniform(0.36, 0.55, (6, 9))
+    g = rng.uniform(0.24, 0.34, (6, 9))
     Z = from_chromaticity(r, g, rng)
     Z[0, :4] = 0
     is_clear = clear(r, g)

@@ -14,7 +14,8 @@ def draw_inputs(rng):
     """Return B, D and where B is full: a spot of full pixels, and single ones."""
     y, x = np.indices(SHAPE)
     E = 1 + 0.5 * gaussian_filter(rng.standard_normal(SHAPE), 2)
-    row, column = rng.integers(12, 22), rng.integers(12, 30)
+    row = rng.integers(12, 22)
+    column = rng.integers(12, 30)
     E += 6 * np.exp(-((y - row) ** 2 + (x - column) ** 2) / 60)
     full = E > 2.5
     full[rng.integers(2, 30, 8), rng.integers(2, 40, 8)] = True

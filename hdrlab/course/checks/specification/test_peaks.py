@@ -12,7 +12,8 @@ def draw_inputs(rng):
     """Return a correlation c in which large values stand beside each other."""
     c = rng.normal(0, 1, SHAPE)
     for height in (9, 8, 7):
-        y, x = rng.integers(8, 28), rng.integers(8, 42)
+        y = rng.integers(8, 28)
+        x = rng.integers(8, 42)
         c[y - 1 : y + 2, x - 1 : x + 2] = height + rng.uniform(0, 0.8, (3, 3))
     return c
 
@@ -45,7 +46,8 @@ def test_the_values_beside_a_peak_are_no_peaks(subject, rng):
     """
     for count in (3, 6):
         c = draw_inputs(rng)
-        row, column = rng.integers(8, 28), rng.integers(8, 40)
+        row = rng.integers(8, 28)
+        column = rng.integers(8, 40)
         c[row, column] = 20
         c[row, column + 3] = 19  # not among the 5 x 5 values around the other
         same(

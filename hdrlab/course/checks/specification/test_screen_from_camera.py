@@ -69,7 +69,8 @@ def test_the_sensitivity_of_the_filters_does_not_matter(subject, rng):
 
     Dividing the rows of A by their sums cancels any factor of a row.
     """
-    overlap, P = random_camera(rng), random_screen(rng)
+    overlap = random_camera(rng)
+    P = random_screen(rng)
     M = rng.choice([0.25, 4.0], (3, 1)) * overlap
     expected = development.screen_from_camera(overlap, P)
     same(subject.screen_from_camera(M, P), expected, 1e-6, what="C")

@@ -8,7 +8,8 @@ def draw_inputs(rng, channels=()):
     """Return an object x (n, ...) and a shutter h (m,), which begins open and is not symmetric."""
     x = rng.uniform(0.2, 1, (int(rng.integers(20, 30)), *channels))
     h = (rng.random(int(rng.integers(8, 14))) < 0.5).astype(float)
-    h[:2], h[-3:] = 1, [0, 0, 1]
+    h[:2] = 1
+    h[-3:] = [0, 0, 1]
     return x, h
 
 

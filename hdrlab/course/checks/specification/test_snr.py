@@ -67,7 +67,9 @@ def test_the_weight_is_bounded_where_the_curve_is_flat(subject, rng):
     The mean slope is (f(n - 1) - f(0)) / (n - 1).
     """
     g = draw_inputs(rng, 120)
-    g[70:100], g[100:] = g[70], g[100:] - g[100] + g[70]
+    # flat from level 70 to level 100
+    g[100:] -= g[100] - g[70]
+    g[70:100] = g[70]
     expected = weights.snr(g, least=0.2, span=3)
     answer = get_answer(subject, g, least=0.2, span=3)
     same(

@@ -100,7 +100,8 @@ def test_exactly_the_fraction_is_enough(subject, rng):
 
     In np.searchsorted, side="left" finds the first place that reaches q. side="right" goes on.
     """
-    low, high = int(rng.integers(10, 100)), int(rng.integers(120, 240))
+    low = int(rng.integers(10, 100))
+    high = int(rng.integers(120, 240))
     h = np.zeros(256, int)
     h[low] = 32
     h[high] = 32

@@ -1,5 +1,6 @@
-// Runs a notebook of hdrlab when it is opened, so that its figures appear without a click. Only
-// `hdrlab lab` loads this extension of JupyterLab. It sends the digests of the code of its notebooks.
+// Runs a notebook of hdrlab when it is opened, so that its figures appear without a click. `hdrlab lab`,
+// Binder and the image for a JupyterHub load this extension of JupyterLab, with the digests of the code
+// of hdrlab's notebooks.
 //
 // Opening a notebook must never run somebody else's code. So this script runs a notebook only if the
 // digest of its code is one of these. It does not run a notebook with outputs either: they may contain
@@ -20,6 +21,8 @@ async function digestOf(codeCells) {
 
 // Run the cells in place. The command "Run All Cells" would scroll to the end of the notebook.
 async function runIfUnchanged(panel, context) {
+  // Browsers compute digests only on https pages and on this machine's own.
+  if (!globalThis.isSecureContext) return;
   await Promise.all([context.ready, panel.revealed]);
   const codeCells = panel.content.widgets.filter((cell) => cell.model.type === "code");
   if (codeCells.some((cell) => cell.model.outputs.length > 0)) return;
