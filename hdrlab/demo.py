@@ -22,7 +22,7 @@ from hdrlab.pipeline.pictures import Developed
 from hdrlab.show.pages.report import write_report
 
 # lines that demo_steps and real_steps yield
-STEPS = 10
+STEP_COUNT = 10
 
 CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
 

@@ -848,7 +848,11 @@ SENTENCES = {
         ),
         "the mean difference over 5 × 5 pixels is at most three standard deviations of its noise, plus 5 %": (
             lambda n: (
-                (n.reference.BOX_SIDE, n.reference.MAX_STANDARD_DEVIATIONS, n.reference.TAU)
+                (
+                    n.reference.BOX_SIDE,
+                    n.reference.MAX_STANDARD_DEVIATIONS,
+                    n.reference.RELATIVE_TOLERANCE,
+                )
                 == (5, 3, 0.05)
             )
         ),

@@ -73,8 +73,8 @@ def laplacian_case(folder: Path, one_thread: bool) -> Case:
 
 def codes_case(folder: Path, one_thread: bool) -> Case:
     """Return the work of coding a picture of 2 megapixels by PQ and by HLG."""
-    FD = np.clip(100 * data.scene(folder).astype(np.float64), 0, transfer.BRIGHTEST)
-    E = FD / transfer.BRIGHTEST
+    FD = np.clip(100 * data.scene(folder).astype(np.float64), 0, transfer.PEAK_LUMINANCE)
+    E = FD / transfer.PEAK_LUMINANCE
 
     def ours() -> tuple[Any, Any]:
         return transfer.pq(FD), transfer.hlg(E)

@@ -6,8 +6,8 @@ f_inv  light of a level    (n,): exp g
 k      exposure ratio      brighter / darker
 X      light               (2, H, W) float32: f_inv(Z) of the brighter photograph, which stays, and
                            k f_inv(Z) of the darker, which moves; NaN where it is discarded
-low    noise limit         light at `DARK` of the darker photograph, on the common scale
-high   saturation limit    light at `BRIGHT` of the brighter photograph
+low    noise limit         light at `DARK_FRACTION` of the darker photograph, on the common scale
+high   saturation limit    light at `SATURATED_FRACTION` of the brighter photograph
 H      homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 p      pixels              (n, 2), (x, y): those of the fixed photograph that are compared
 d      differences         (n,): (a - b) / max((a + b) / 2, t), relative to light; NaN where one is discarded
@@ -33,9 +33,9 @@ from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.errors import InputError
 
 # fraction of the top level below which noise dominates
-DARK = 5 / 255
+DARK_FRACTION = 5 / 255
 # fraction of the top level above which a pixel counts as saturated
-BRIGHT = 250 / 255
+SATURATED_FRACTION = 250 / 255
 # Interpolation smooths noise, so that fractions of pixels would seem to fit better than whole ones.
 # Smoothing both photographs first, by this standard deviation in pixels, removes the advantage.
 SMOOTHING_SIGMA = 1.0
@@ -86,8 +86,8 @@ def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:
     on the same scale.
     """
     top = len(dark) - 1
-    low = np.float32(dark[round(DARK * top)])
-    high = np.float32(bright[round(BRIGHT * top)])
+    low = np.float32(dark[round(DARK_FRACTION * top)])
+    high = np.float32(bright[round(SATURATED_FRACTION * top)])
     X = np.stack([bright[fixed], dark[moving]]).astype(np.float32)
     return pyramid(np.clip(X, low, max(low, high)), (X > low) & (X < high))
 
@@ -161,7 +161,7 @@ def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     z = np.arange(len(g))
     top = len(g) - 1
     T = brightness_transfer(h_dark, h_bright)  # NaN fails both comparisons
-    both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)
+    both = (np.minimum(z, T) > DARK_FRACTION * top) & (np.maximum(z, T) < SATURATED_FRACTION * top)
     h = h_dark[both]
     if not h.any():
         return 1.0

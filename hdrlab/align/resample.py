@@ -17,7 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from hdrlab.align.light import BRIGHT
+from hdrlab.align.light import SATURATED_FRACTION
 from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
@@ -95,7 +95,7 @@ def move_image(image: Array, H: F64, shown: tuple[slice, slice], table: F64) -> 
         mean = warp.sample(light[part, np.arange(part.shape[2])], to_part, band.shape)
         for c in range(part.shape[2]):
             band[..., c] = np.interp(mean[..., c], table[:, c], np.arange(n)) + 0.5
-        clipped = _touched(part >= round(BRIGHT * (n - 1)), to_part, band.shape)
+        clipped = _touched(part >= round(SATURATED_FRACTION * (n - 1)), to_part, band.shape)
         np.copyto(band, warp.nearest(part, to_part, band.shape), where=clipped)
     return moved.reshape(*size, *image.shape[2:])
 

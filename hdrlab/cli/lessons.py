@@ -27,7 +27,7 @@ def demo(*, out: Path, seed: int, real: bool) -> None:
     from hdrlab import demo as demo_steps
 
     steps = demo_steps.real_steps(out) if real else demo_steps.demo_steps(out, seed=seed)
-    for line in common.progress(steps, "demo", demo_steps.STEPS):
+    for line in common.progress(steps, "demo", demo_steps.STEP_COUNT):
         click.echo(line)
 
 

@@ -13,7 +13,7 @@ from typing import Any, Generic, TypeVar
 Answer = TypeVar("Answer")
 
 # For images with fewer pixels, threads cost as much time as they save.
-PIXELS = 1 << 22
+MIN_PIXELS_FOR_THREAD = 1 << 22
 PROCESSORS = (
     len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 )
@@ -35,11 +35,13 @@ class DeferredTask(Generic[Answer]):
 Task = Future[Answer] | DeferredTask[Answer]
 
 
-def run_in_background(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Task[Answer]:
+def run_in_background(
+    work: Callable[[], Answer], *, pixels: int = MIN_PIXELS_FOR_THREAD
+) -> Task[Answer]:
     """Start work() in a thread and return a task, whose result() waits for it.
 
-    Where a thread would not help (one processor, or fewer than PIXELS pixels), work() runs when
-    result() is called.
+    With one processor, or fewer than MIN_PIXELS_FOR_THREAD pixels, a thread would not help. Then
+    work() runs when result() is called.
 
     Examples
     --------
@@ -47,7 +49,7 @@ def run_in_background(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Ta
     >>> task.result()
     42
     """
-    if THREADS == 1 or pixels < PIXELS:
+    if THREADS == 1 or pixels < MIN_PIXELS_FOR_THREAD:
         return DeferredTask(work)
     pool = ThreadPoolExecutor(1)
     task = pool.submit(copy_context().run, work)
@@ -56,19 +58,19 @@ def run_in_background(work: Callable[[], Answer], *, pixels: int = PIXELS) -> Ta
 
 
 def map_in_threads(
-    work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = PIXELS
+    work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = MIN_PIXELS_FOR_THREAD
 ) -> Generator[Answer]:
     """Yield work(item) for each item, in order, computed in threads a few items ahead.
 
-    With one processor, or fewer than PIXELS pixels, no thread is started: each thread has its own
-    memory pool, which is slower.
+    With one processor, or fewer than MIN_PIXELS_FOR_THREAD pixels, no thread is started: each thread
+    has its own memory pool, which is slower.
 
     Examples
     --------
     >>> list(map_in_threads(abs, [-3, 1, -2]))
     [3, 1, 2]
     """
-    if THREADS == 1 or pixels < PIXELS:
+    if THREADS == 1 or pixels < MIN_PIXELS_FOR_THREAD:
         yield from map(work, items)
         return
     tasks: deque[Future[Answer]] = deque()

@@ -32,7 +32,7 @@ if in_process.IS_BROWSER:
         tier=in_process.TIER, timeout=BROWSER_TIMEOUT_FACTOR * CALL_TIMEOUT_SECONDS
     )
 # what messages call the code that `check_text` is given
-TEXT = "Your text"
+TEXT_NAME = "Your text"
 ABOUT_TUTOR = "They lead from a small input to the mistake. They cost no points."
 
 # the latest result of each task in this kernel, for the bar of the homework
@@ -165,12 +165,12 @@ def check_text(name: str, text: str, *, draw: bool = True) -> results.Result:
         For a name that is not a task.
     """
     homework, _ = find_tasks(name)
-    cells = [closure.Cell(text, where=TEXT)]
+    cells = [closure.Cell(text, where=TEXT_NAME)]
     sources, problems = closure.extract_sources(cells, [name], reader.given_cells(homework.name))
     if not sources:
         # where the text is no Python, that is why the function is missing
-        broken = [problem for problem in problems if problem.startswith(TEXT)]
-        problems = broken or [f"{TEXT} defines no function {name}"]
+        broken = [problem for problem in problems if problem.startswith(TEXT_NAME)]
+        problems = broken or [f"{TEXT_NAME} defines no function {name}"]
     code = reader.SubmittedCode(
         sources=sources,
         problems=tuple(problems),

@@ -48,8 +48,8 @@ MEDIAN_SQUARED_DIFFERENCE = 0.91
 # standard deviation over median absolute deviation, of a normal distribution
 DEVIATION_PER_MAD = 1.4826
 # where the fit may begin, and how far it may go: ln of 1 / N, (R / N)^2 and rho^2
-STARTS = np.log([[1e-4, 1e-7, 1e-6], [1e-3, 1e-8, 1e-8], [1e-2, 1e-4, 1e-6]])
-LIMITS = np.log([[1e-9, 1e-16, 1e-12], [10.0, 10.0, 1.0]])
+LOG_STARTS = np.log([[1e-4, 1e-7, 1e-6], [1e-3, 1e-8, 1e-8], [1e-2, 1e-4, 1e-6]])
+LOG_BOUNDS = np.log([[1e-9, 1e-16, 1e-12], [10.0, 10.0, 1.0]])
 
 
 class Noise(NamedTuple):
@@ -238,7 +238,9 @@ def _solve(S: F64, a0: F64, a: F64, count: F64) -> tuple[float, float, float]:
     def residual(p: F64) -> F64:
         return np.asarray(np.log((a0 + np.exp(p) @ a) / S) / sd, np.float64)
 
-    fits = [least_squares(residual, start, bounds=LIMITS, loss="soft_l1") for start in STARTS]
+    fits = [
+        least_squares(residual, start, bounds=LOG_BOUNDS, loss="soft_l1") for start in LOG_STARTS
+    ]
     best = min(fits, key=lambda fit: float(fit.cost))
     inverse_N, squared_R_per_N, squared_rho = np.exp(best.x)
     return 1 / inverse_N, np.sqrt(squared_R_per_N) / inverse_N, np.sqrt(squared_rho)

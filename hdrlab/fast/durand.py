@@ -15,7 +15,7 @@ _fix = with_parts(__name__, durand.fix_uncertain, gaussian_filter=blur.gaussian)
 
 def fix_uncertain(mean: F32, k: F32, *, sigma_s: float) -> F32:
     """Return the lesson's base, computed in bands of rows."""
-    return _bands.banded(partial(_fix, sigma_s=sigma_s), mean, k, margin=4 * durand.NEAR)
+    return _bands.banded(partial(_fix, sigma_s=sigma_s), mean, k, margin=4 * durand.UNCERTAIN_SIGMA)
 
 
 def combine(base: F32, detail: F32) -> F32:

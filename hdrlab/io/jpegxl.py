@@ -44,7 +44,7 @@ FLOAT_DEPTHS = (16, 32)
 # Color spaces, white points, primaries and transfer functions by their numbers [ITU-T H.273].
 RGB_SPACE = 0
 GRAY_SPACE = 1
-D65 = 1
+D65_WHITE_POINT = 1
 SRGB_PRIMARIES = 1
 P3_PRIMARIES = 11
 UNKNOWN_PRIMARIES = 0
@@ -289,7 +289,7 @@ def _read_color_encoding(bits: BitReader) -> ColorEncoding:
     else:
         transfer = bits.read_enum()
     bits.read_enum()  # the rendering intent
-    if has_profile or space not in (RGB_SPACE, GRAY_SPACE) or white_point != D65:
+    if has_profile or space not in (RGB_SPACE, GRAY_SPACE) or white_point != D65_WHITE_POINT:
         primaries = UNKNOWN_PRIMARIES
     return ColorEncoding(primaries, space == GRAY_SPACE, transfer)
 

@@ -15,7 +15,7 @@ from hdrlab.errors import FileFormatError
 from hdrlab.io.decode import PhotoHeader
 
 # Pillow's formats that `reduce_photo` reads.
-KINDS = ("JPEG", "PNG")
+READABLE_FORMATS = ("JPEG", "PNG")
 # The result is deleted soon, so it is compressed quickly.
 PNG_COMPRESS_LEVEL = 1
 
@@ -51,7 +51,7 @@ def reduce_photo(header: PhotoHeader, out: Path, max_pixels: int) -> PhotoHeader
     """
     path = header.path
     try:
-        with ignore_library_warnings(), Image.open(path, formats=KINDS) as image:
+        with ignore_library_warnings(), Image.open(path, formats=READABLE_FORMATS) as image:
             size = reduced_size(*image.size, max_pixels)
             image.draft(None, size)  # a JPEG is decoded at the smallest of its sizes above this
             small = image.resize(size, Image.Resampling.BILINEAR)

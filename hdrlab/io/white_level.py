@@ -23,7 +23,7 @@ MIN_PILE_SAMPLES = 16
 # and so many times as many as have a typical value just below it.
 MIN_PILE_RATIO = 10.0
 # Values just below the maximum, as a fraction of it.
-NEIGHBORHOOD = 0.02
+NEIGHBORHOOD_FRACTION = 0.02
 # A white level that is no 2^n - 1 needs several photos with different brightness.
 MIN_CLIPPED_PHOTOS = 2
 MIN_BRIGHTNESS_RATIO = 1.2
@@ -90,7 +90,7 @@ def _measure_pile(samples: Array, white: int) -> Pile:
     min_count = max(MIN_PILE_SAMPLES, MIN_PILE_FRACTION * samples.size)
     if count < min_count:
         return Pile(is_clear=False, brightness=brightness)
-    width = max(1, round(NEIGHBORHOOD * white))
+    width = max(1, round(NEIGHBORHOOD_FRACTION * white))
     near_count = np.count_nonzero(samples >= white - width) - count
     is_clear = bool(count > MIN_PILE_RATIO * near_count / width)
     return Pile(is_clear=is_clear, brightness=brightness)

@@ -20,7 +20,7 @@ from hdrlab.core.arrays import F64, Array, Mask, to_256
 from hdrlab.io.band_shifts import measure_shift
 
 # columns of the image in which the prediction is judged one by one
-SECTIONS = 8
+SECTION_COUNT = 8
 # sections in which a row must be wrong
 MIN_WRONG_SECTIONS = 6
 # fraction of the pixels of a section that must be wrong, and that must be predicted
@@ -82,7 +82,7 @@ class PhotoComparison:
         return self._shifts[key]
 
     def get_wrong_fractions(self, source: int, target: int) -> F64:
-        """Return the fraction of wrong pixels (h, SECTIONS); NaN where too little is predicted."""
+        """Return the fraction of wrong pixels (h, SECTION_COUNT); NaN where too little is predicted."""
         key = (source, target)
         if key not in self._wrong_fractions:
             shift = self.get_shift(source, target)
@@ -167,7 +167,7 @@ def _measure_wrong_fractions(given: Array, shown: Array) -> F64:
         errors[..., channel] = np.abs(table[given[..., channel]] - shown[..., channel])
     is_known = np.isfinite(errors)
     if not is_known.any():
-        return np.full((len(shown), SECTIONS), np.nan)
+        return np.full((len(shown), SECTION_COUNT), np.nan)
     typical = float(np.quantile(errors[is_known], ERROR_QUANTILE))
     is_wrong = errors > max(MIN_WRONG_LEVELS, WRONG_FACTOR * typical)
     known = _sum_sections(is_known)
@@ -191,9 +191,9 @@ def _make_median_table(given: Array, shown: Array) -> F64:
 
 
 def _sum_sections(mask: Mask) -> F64:
-    """Return how many values of a mask (h, w, C) are true in each section, (h, SECTIONS)."""
+    """Return how many values of a mask (h, w, C) are true in each section, (h, SECTION_COUNT)."""
     counts = mask.sum(axis=2).astype(np.float64)
-    starts = np.linspace(0, mask.shape[1], SECTIONS + 1)[:-1].astype(int)
+    starts = np.linspace(0, mask.shape[1], SECTION_COUNT + 1)[:-1].astype(int)
     summed = np.add.reduceat(counts, starts, axis=1)
     # A few rows together: one row has few pixels.
     padded = np.pad(summed, ((EDGE_ROWS // 2, EDGE_ROWS // 2), (0, 0)), "edge")
@@ -206,8 +206,8 @@ def _find_band(wrong: F64) -> tuple[int, int] | None:
     height = len(wrong)
     known_sections = np.isfinite(wrong).sum(axis=1)
     wrong_sections = np.nansum(wrong >= MIN_WRONG_FRACTION, axis=1)
-    needed = np.ceil(known_sections * MIN_WRONG_SECTIONS / SECTIONS)
-    is_bad = (known_sections >= SECTIONS // 2) & (wrong_sections >= needed)
+    needed = np.ceil(known_sections * MIN_WRONG_SECTIONS / SECTION_COUNT)
+    is_bad = (known_sections >= SECTION_COUNT // 2) & (wrong_sections >= needed)
     rows = np.flatnonzero(is_bad)
     if not len(rows):
         return None

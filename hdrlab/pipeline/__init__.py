@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     )
     from hdrlab.pipeline.registration import align_bracket, apply_alignment
     from hdrlab.pipeline.stages import (
-        CONTRADICTION,
         STAGES,
         assemble,
         assemble_steps,
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from hdrlab.pipeline.timing import space_by_stops
 
 __all__ = [
-    "CONTRADICTION",
     "STAGES",
     "WEIGHTS",
     "Assembly",
@@ -70,7 +68,6 @@ _MODULES = {
     "resolve_settings": "pictures",
     "align_bracket": "registration",
     "apply_alignment": "registration",
-    "CONTRADICTION": "stages",
     "STAGES": "stages",
     "assemble": "stages",
     "assemble_steps": "stages",

@@ -40,14 +40,14 @@ MIN_PLANE_PIXELS = 200
 # the middle of the frame, as a fraction of each side: vignetting is small there
 MIDDLE_FRACTION = 0.5
 # blocks of a side of the frame in which the level of darks is compared
-BLOCKS = 8
+BLOCKS_PER_SIDE = 8
 # standard deviations beyond which a level counts as an outlier of its block
 OUTLIER_DEVIATIONS = 6.0
 # LibRaw's range of developed levels, and the level of exposure 1 in a response
 LARGEST_LEVEL = 65535
 UNIT_LEVEL = 32768
 # kinds of warnings with which a merge would be wrong
-SPOILED = (camera_noise.TONE_CURVE, camera_noise.DENOISED_FLATS)
+SPOILING_WARNING_KINDS = (camera_noise.TONE_CURVE, camera_noise.DENOISED_FLATS)
 
 CHANNEL_NAMES = ("red", "green", "blue")
 QUANTITIES = {
@@ -375,7 +375,7 @@ def _read_frame(header: PhotoHeader, *, is_dark: bool) -> _Frame:
         planes[name] = _cut_middle(header.path, stack)
         if is_dark:
             block_means[name] = _average_blocks(stack)
-            block_pixels = (height // BLOCKS) * (width // BLOCKS)
+            block_pixels = (height // BLOCKS_PER_SIDE) * (width // BLOCKS_PER_SIDE)
     return _Frame(
         planes=planes,
         block_means=block_means,
@@ -397,7 +397,7 @@ def _cut_middle(path: Path, planes: Array) -> Array:
     height, width = planes.shape[1:]
     rows = min(int(height * MIDDLE_FRACTION), MAX_PLANE_SIDE)
     columns = min(int(width * MIDDLE_FRACTION), MAX_PLANE_SIDE)
-    if rows * columns < MIN_PLANE_PIXELS or min(rows, columns) < BLOCKS:
+    if rows * columns < MIN_PLANE_PIXELS or min(rows, columns) < BLOCKS_PER_SIDE:
         raise InputError(
             f"{path}: expected a larger photo, its channels have {width} x {height} pixels"
         )
@@ -408,13 +408,13 @@ def _cut_middle(path: Path, planes: Array) -> Array:
 
 def _average_blocks(planes: Array) -> F64:
     """Return the means (K, B, B) of blocks of planes (K, H, W), without hot pixels."""
-    rows = planes.shape[1] // BLOCKS
-    columns = planes.shape[2] // BLOCKS
+    rows = planes.shape[1] // BLOCKS_PER_SIDE
+    columns = planes.shape[2] // BLOCKS_PER_SIDE
     middle = np.median(planes)
     deviation = camera_noise.DEVIATION_PER_MAD * np.median(np.abs(planes - middle))
     reach = OUTLIER_DEVIATIONS * max(deviation, 1)
-    blocks = planes[:, : rows * BLOCKS, : columns * BLOCKS].reshape(
-        -1, BLOCKS, rows, BLOCKS, columns
+    blocks = planes[:, : rows * BLOCKS_PER_SIDE, : columns * BLOCKS_PER_SIDE].reshape(
+        -1, BLOCKS_PER_SIDE, rows, BLOCKS_PER_SIDE, columns
     )
     lowest = np.median(blocks, axis=(2, 4), keepdims=True) - reach
     highest = lowest + 2 * reach
@@ -490,7 +490,7 @@ def safe_read_noise(channel: ChannelNoise) -> float:
 
 def require_useful(noise: CameraNoise) -> None:
     """Raise an InputError if the photos of the measurement make its figures wrong."""
-    spoiled = [warning.text for warning in noise.warnings if warning.kind in SPOILED]
+    spoiled = [warning.text for warning in noise.warnings if warning.kind in SPOILING_WARNING_KINDS]
     if spoiled:
         raise InputError(f"the measured noise is of no use: {spoiled[0]}")
 

@@ -109,7 +109,7 @@ def remove_ghosts(
         fixed=len(bracket.images) // 2 if mode == "reference" else None,
     )
     percent = 100 * np.mean(result.labels > 0)
-    is_widespread = percent >= ghosts.WIDESPREAD
+    is_widespread = percent >= ghosts.WIDESPREAD_PERCENT
     if mode == "auto" and (not len(result.references) or (is_misaligned and is_widespread)):
         return state
     E = result.E

@@ -27,7 +27,7 @@ import numpy as np
 import scipy
 
 from hdrlab.align import cerman, homography
-from hdrlab.align.light import BRIGHT, DARK, SMOOTHING_SIGMA
+from hdrlab.align.light import DARK_FRACTION, SATURATED_FRACTION, SMOOTHING_SIGMA
 from hdrlab.core.arrays import F32, F64, Array
 from hdrlab.core.filters import warp
 from hdrlab.diagnostics.warning_texts import MARGIN
@@ -56,7 +56,7 @@ ROUNDING_VARIANCE = 1 / 12
 # peaks of the correlation from which a search starts
 PEAK_COUNT = 3
 # blocks a side in which the remaining shift is measured
-BLOCKS = 4
+BLOCKS_PER_SIDE = 4
 # A block counts if its shift is known to this fraction of the largest shift that is allowed.
 MAX_RELATIVE_SIGMA = 0.3
 # blocks that must count before they can tell anything
@@ -194,8 +194,8 @@ def match_ranks(dark: Array, bright: Array, seen: Array, seen_bright: Array) -> 
         matched = z.astype(float)
     else:
         matched = np.interp(_middle_ranks(bright_counts), _middle_ranks(counts)[values], values)
-    low = DARK * 255
-    high = BRIGHT * 255
+    low = DARK_FRACTION * 255
+    high = SATURATED_FRACTION * 255
     # Noise and clipping end at the same light in both photos, so that the outline of a lamp is the
     # same in both, too.
     highest = max(min(matched[int(high)], high), low)
@@ -343,8 +343,8 @@ def _sum_blocks(terms: F32, w: F32) -> F64:
     used_columns = np.flatnonzero(w.any(axis=0))
     all_rows = np.arange(used_rows[0], used_rows[-1] + 1)
     all_columns = np.arange(used_columns[0], used_columns[-1] + 1)
-    for rows in np.array_split(all_rows, BLOCKS):
-        for columns in np.array_split(all_columns, BLOCKS):
+    for rows in np.array_split(all_rows, BLOCKS_PER_SIDE):
+        for columns in np.array_split(all_columns, BLOCKS_PER_SIDE):
             if not rows.size or not columns.size:
                 continue
             block = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]

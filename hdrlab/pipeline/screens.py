@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrlab.core import arrays, colour, gainmap, gamut
 from hdrlab.io.web import as_rgb
-from hdrlab.tonemap.transfer import BRIGHTEST, pq
+from hdrlab.tonemap.transfer import PEAK_LUMINANCE, pq
 
 WHITE_LUMINANCE = 203.0  # cd/m2
 
@@ -25,7 +25,7 @@ def signal(hdr: arrays.ArrayLike, *, primaries: str = "bt2020") -> arrays.F64:
     """
     to_primaries = gamut.conversion_matrix(gamut.SRGB, gamut.WIDE[primaries])
     luminance = WHITE_LUMINANCE * (np.asarray(hdr) @ to_primaries.T)
-    return pq(np.clip(luminance, 0, BRIGHTEST))
+    return pq(np.clip(luminance, 0, PEAK_LUMINANCE))
 
 
 def light(

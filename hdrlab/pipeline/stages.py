@@ -17,7 +17,6 @@ from hdrlab.core.arrays import F32, F64
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.threads import Task, run_in_background
 from hdrlab.diagnostics import causes, consistency, motion, tones
-from hdrlab.diagnostics.causes import MAX_EXPLAINED_SPREAD
 from hdrlab.diagnostics.contradictions import Contradictions
 from hdrlab.diagnostics.warning_texts import warning_text
 from hdrlab.errors import InputError
@@ -30,7 +29,6 @@ from hdrlab.radiance import scales
 from hdrlab.radiance.merge import Merged
 
 __all__ = [
-    "CONTRADICTION",
     "FLARE",
     "GHOSTS",
     "MERGES",
@@ -43,7 +41,6 @@ __all__ = [
 ]
 
 STAGES = ("align", "times", "response", "merge", "compare")
-CONTRADICTION = MAX_EXPLAINED_SPREAD
 
 
 def assemble(

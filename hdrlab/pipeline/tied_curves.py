@@ -23,7 +23,7 @@ from hdrlab.errors import InputError
 from hdrlab.response import space
 
 # standard deviation of ln exposure at the pixel value of the largest weight, as in `space.recover`
-NOISE = 0.02
+LOG_EXPOSURE_DEVIATION = 0.02
 # pixel values below which noise and rounding decide
 FIRST_MEASURED_LEVEL = 8
 # standard deviation of the departure of these pixel values, ln exposure, for tau = 1
@@ -79,8 +79,8 @@ def recover(
     right_sides = []
     for Z in sampling.split_channels(samples):
         A, b = space.build_equations(Z, log_times, level_weights, basis)
-        normal_matrices.append(A.T @ A / NOISE**2)
-        right_sides.append(A.T @ b / NOISE**2)
+        normal_matrices.append(A.T @ A / LOG_EXPOSURE_DEVIATION**2)
+        right_sides.append(A.T @ b / LOG_EXPOSURE_DEVIATION**2)
     D = basis.H[:, :FIRST_MEASURED_LEVEL].T
     precision = np.diag(1 / basis.sd**2) + D.T @ D / DARK_DEPARTURE**2
     coefficients = _solve(normal_matrices, right_sides, basis.sd, precision / departure**2)

@@ -5,7 +5,7 @@ and an average of pixel values at an edge has another rank in a darker photo. Bo
 displacement, which is multiplied by the scale of the level. Tiles of the photos themselves have
 neither fault, and cost the same for an image of any size.
 
-tiles  (TILES, TILES, side, side): an even grid over the area that both photos show
+tiles  (TILES_PER_SIDE, TILES_PER_SIDE, side, side): an even grid over the area that both photos show
 """
 
 from dataclasses import replace
@@ -17,10 +17,10 @@ from hdrlab.align.light import SMOOTHING_SIGMA
 from hdrlab.core.arrays import F32, F64, Array
 from hdrlab.core.filters import warp
 from hdrlab.pipeline import rigid_motion
-from hdrlab.pipeline.rigid_motion import BLOCKS, Fit
+from hdrlab.pipeline.rigid_motion import BLOCKS_PER_SIDE, Fit
 
 # tiles a side of the image: a multiple of the blocks
-TILES = 2 * BLOCKS
+TILES_PER_SIDE = 2 * BLOCKS_PER_SIDE
 # The tiles of a quick check hold this fraction of the pixels, within limits of their side.
 QUICK_FRACTION = 1 / 16
 MIN_QUICK_SIDE_PIXELS = 16
@@ -36,7 +36,7 @@ MIN_STEP_PIXELS = 0.02
 
 def quick_side(shape: tuple[int, ...]) -> int:
     """Return the side of the tiles of a quick check, in pixels."""
-    side = round(np.sqrt(QUICK_FRACTION * shape[0] * shape[1]) / TILES)
+    side = round(np.sqrt(QUICK_FRACTION * shape[0] * shape[1]) / TILES_PER_SIDE)
     return min(max(side, MIN_QUICK_SIDE_PIXELS), MAX_QUICK_SIDE_PIXELS)
 
 
@@ -89,7 +89,7 @@ def refine(dark: Array, bright: Array, H: F64) -> Fit:
 
 
 def _place_tiles(H: F64, shape: tuple[int, ...], side: int) -> tuple[Array, Array]:
-    """Return the first rows (TILES,) and columns (TILES,) of tiles in the area that both show."""
+    """Return the first rows and first columns (TILES_PER_SIDE,) of tiles in the area that both show."""
     height, width = shape
     corners = warp.apply(H, warp.corners(shape))
     left, top = np.ceil(corners.min(axis=0)).astype(int)
@@ -98,7 +98,7 @@ def _place_tiles(H: F64, shape: tuple[int, ...], side: int) -> tuple[Array, Arra
     for first, last, length in ((top, bottom, height), (left, right, width)):
         low = min(max(first, 0), length - side)
         high = max(min(last + 1, length) - side, low)
-        starts.append(np.linspace(low, high, TILES).astype(int))
+        starts.append(np.linspace(low, high, TILES_PER_SIDE).astype(int))
     return starts[0], starts[1]
 
 
@@ -145,10 +145,10 @@ def _smooth(tiles: F32) -> F32:
 
 
 def _sum_blocks(terms: F32, w: F32) -> F64:
-    """Return N (blocks, 5, 5) of terms (5, TILES, TILES, h, w)."""
-    tiles_per_block = TILES // BLOCKS
-    shape = (len(terms), BLOCKS, tiles_per_block, BLOCKS, tiles_per_block, -1)
-    columns = np.moveaxis(terms.reshape(shape), 2, 3).reshape(len(terms), BLOCKS**2, -1)
-    weights = np.moveaxis(w.reshape(shape[1:]), 1, 2).reshape(BLOCKS**2, -1)
+    """Return N (blocks, 5, 5) of terms (5, TILES_PER_SIDE, TILES_PER_SIDE, h, w)."""
+    tiles_per_block = TILES_PER_SIDE // BLOCKS_PER_SIDE
+    shape = (len(terms), BLOCKS_PER_SIDE, tiles_per_block, BLOCKS_PER_SIDE, tiles_per_block, -1)
+    columns = np.moveaxis(terms.reshape(shape), 2, 3).reshape(len(terms), BLOCKS_PER_SIDE**2, -1)
+    weights = np.moveaxis(w.reshape(shape[1:]), 1, 2).reshape(BLOCKS_PER_SIDE**2, -1)
     by_block = np.moveaxis(columns, 1, 0)
     return np.asarray((by_block * weights[:, None]) @ np.moveaxis(by_block, 1, 2), np.float64)

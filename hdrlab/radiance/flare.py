@@ -40,7 +40,7 @@ COMPARISON_WIDTH = 384
 # fraction of a pixel's light that the estimate of the removed light counts at most
 MAX_REMOVED_FRACTION = 0.97
 # K * F stands in for K * E at first; each iteration reduces the error by a factor of the share
-ITERATIONS = 4
+ITERATION_COUNT = 4
 
 
 class State(NamedTuple):
@@ -111,7 +111,7 @@ def glare_steps(
     E = F
     transform = spread_transform(F.shape, power, core)
     factor = max(1, F.shape[1] // COMPARISON_WIDTH)
-    for _ in range(ITERATIONS):
+    for _ in range(ITERATION_COUNT):
         G = scatter(E, transform)
         if share is None:
             estimate, _ = lowest_ratio(block_means(F, factor), block_means(G, factor))

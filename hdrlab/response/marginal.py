@@ -34,7 +34,7 @@ MIN_NOISE = 2e-3
 # the initial guess of sigma
 INITIAL_NOISE = 0.005
 # number of nodes
-_NODES = 400
+_NODE_COUNT = 400
 # A step is halved at most this often until it raises the likelihood.
 _MAX_HALVINGS = 12
 # EM steps for the density before theta changes
@@ -152,7 +152,7 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
 def begin(Z: Indices, theta: F64, blur: float) -> tuple[likelihood.Nodes, likelihood.Support, F64]:
     """Return nodes, their support under `blur` times the noise, and p after five steps of EM."""
     c, tau, sigma = unpack(theta, Z.shape[1])
-    at = likelihood.nodes(c, tau, _NODES)
+    at = likelihood.nodes(c, tau, _NODE_COUNT)
     m = likelihood.predict(c, tau, at)[0]
     near = likelihood.support(Z, likelihood.table(m, blur * sigma))
     q, k, z = near.cells

@@ -33,9 +33,9 @@ MAX_ORDER = 10
 # mean, and near the top level there are always some.
 MAX_CLIPPED_FRACTION = 0.1
 # The order is chosen by cross-validation over this many parts of the picture. Each part is made of
-# stripes: it takes every _PARTS-th of them.
-_PARTS = 5
-_STRIPES = 20
+# stripes: it takes every _PART_COUNT-th of them.
+_PART_COUNT = 5
+_STRIPE_COUNT = 20
 # Errors in brightness that differ by less than a hundredth of a level count as equal.
 _MIN_ERROR_DIFFERENCE = 0.01 / 255
 
@@ -129,11 +129,12 @@ def samples(
     The samples are grouped by parts of the picture, M (C, N, P) each.
     """
     Z, R = levels_by_time(images, times, pixels, valid=valid)
-    stripes = np.array_split(np.arange(Z.shape[1]), _STRIPES)  # the grid's pixels come row by row
-    count_per_part = math.ceil(count / _PARTS)
+    # the pixels of the grid are in order of their rows
+    stripes = np.array_split(np.arange(Z.shape[1]), _STRIPE_COUNT)
+    count_per_part = math.ceil(count / _PART_COUNT)
     parts = []
-    for k in range(min(_PARTS, Z.shape[1])):
-        Z_part = Z[:, np.concatenate(stripes[k::_PARTS])]
+    for k in range(min(_PART_COUNT, Z.shape[1])):
+        Z_part = Z[:, np.concatenate(stripes[k::_PART_COUNT])]
         parts.append(np.stack([average(Z_channel, count_per_part) for Z_channel in Z_part]))
     return parts, R
 

@@ -26,10 +26,10 @@ MIDDLE_GRAY = 0.18
 LOWEST_STOP = -10.0
 HIGHEST_STOP = 6.5
 # Each channel keeps this part of itself ...
-KEPT = 0.8
+OWN_FRACTION = 0.8
 # ... and gets these parts of R, G and B. They follow from the primaries of sRGB, moved away from
-# white to 1.25 times their distance in the diagram of CIE x and y. Together with KEPT they are 1.
-MIXED = np.array([0.0424010709504686, 0.0784365015618028, 0.0791624274877286])
+# white to 1.25 times their distance in the diagram of CIE x and y. Their sum with OWN_FRACTION is 1.
+MIXED_FRACTIONS = np.array([0.0424010709504686, 0.0784365015618028, 0.0791624274877286])
 # of the sigmoid, at middle gray
 PIVOT = -LOWEST_STOP / (HIGHEST_STOP - LOWEST_STOP)
 SLOPE = 2.0
@@ -43,13 +43,13 @@ DISPLAY_GAMMA = 2.2
 def inset(C: ArrayLike) -> F64:
     """Return C' = 0.8 C + 0.042 R + 0.078 G + 0.079 B for each channel C; a gray stays as it is."""
     C = np.asarray(C, np.float64)
-    return KEPT * C + np.sum(MIXED * C, axis=-1, keepdims=True)
+    return OWN_FRACTION * C + np.sum(MIXED_FRACTIONS * C, axis=-1, keepdims=True)
 
 
 def outset(C: ArrayLike) -> F64:
     """Return (C - 0.042 R - 0.078 G - 0.079 B) / 0.8 for each channel C, the inverse of the inset."""
     C = np.asarray(C, np.float64)
-    return (C - np.sum(MIXED * C, axis=-1, keepdims=True)) / KEPT
+    return (C - np.sum(MIXED_FRACTIONS * C, axis=-1, keepdims=True)) / OWN_FRACTION
 
 
 def encode_log(C: ArrayLike) -> F64:

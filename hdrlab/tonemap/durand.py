@@ -33,7 +33,7 @@ SIGMA_S_FRACTION = 0.02
 # relative to the median luminance; darker pixels have no detail
 MIN_RELATIVE_LUMINANCE = 1e-6
 # sigma in pixels of the blur that replaces an uncertain base
-NEAR = 2
+UNCERTAIN_SIGMA = 2
 # percentiles are computed from about this many pixels
 PERCENTILE_PIXELS = 2**18
 
@@ -61,7 +61,7 @@ def fix_uncertain(mean: F32, k: F32, *, sigma_s: float) -> F32:
     if enough <= 1 or k.min() >= enough:
         return mean
     u = np.log(np.clip(k, 1, enough)) / math.log(enough)
-    return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
+    return mean + (1 - u) * (gaussian_filter(mean, UNCERTAIN_SIGMA) - mean)
 
 
 def layers(lL: F32, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:

@@ -21,9 +21,9 @@ from hdrlab.tonemap.view_unit import scale_colors
 
 LAWS = ("monotone", "exposure")
 # F90 of the specification, the reflectance of glass and plastic seen from the front
-GLOSS = 0.04
+REFLECTANCE = 0.04
 # Ks: up to this peak, colors are not compressed
-COMPRESSION_START = 0.8 - GLOSS
+COMPRESSION_START = 0.8 - REFLECTANCE
 # Kd: how fast colors become white above it
 DESATURATION = 0.15
 
@@ -31,7 +31,7 @@ DESATURATION = 0.15
 def offset(x: ArrayLike) -> F64:
     """Return f = x - x^2 / (4 F90) up to x = 2 F90 = 0.08, and F90 = 0.04 above it."""
     x = np.asarray(x, np.float64)
-    return np.where(x < 2 * GLOSS, x - x**2 / (4 * GLOSS), GLOSS)
+    return np.where(x < 2 * REFLECTANCE, x - x**2 / (4 * REFLECTANCE), REFLECTANCE)
 
 
 def compress(p: ArrayLike) -> F64:

@@ -19,7 +19,7 @@ from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.errors import InputError
 
 # cd/m2, of PQ's largest code
-BRIGHTEST = 10_000
+PEAK_LUMINANCE = 10_000
 # m1, m2, c1, c2, c3 of PQ [BT.2100 table 4]
 M1 = 2610 / 16384
 M2 = 128 * 2523 / 4096
@@ -54,14 +54,14 @@ def pq(FD: ArrayLike) -> F64:
     >>> pq([0.1, 1, 100, 10_000]).round(3)
     array([0.062, 0.15 , 0.508, 1.   ])
     """
-    Ym = (within(FD, BRIGHTEST) / BRIGHTEST) ** M1
+    Ym = (within(FD, PEAK_LUMINANCE) / PEAK_LUMINANCE) ** M1
     return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2
 
 
 def pq_inverse(v: ArrayLike) -> F64:
     """Return FD = 10,000 (max(v^(1/m2) - c1, 0) / (c2 - c3 v^(1/m2)))^(1/m1) [BT.2100 table 4, EOTF]."""
     vm = within(v, 1) ** (1 / M2)
-    return BRIGHTEST * (np.maximum(vm - C1, 0) / (C2 - C3 * vm)) ** (1 / M1)
+    return PEAK_LUMINANCE * (np.maximum(vm - C1, 0) / (C2 - C3 * vm)) ** (1 / M1)
 
 
 def hlg(E: ArrayLike) -> F64:

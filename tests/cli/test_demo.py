@@ -18,7 +18,7 @@ def results(tmp_path_factory):
 
 @pytest.mark.papers
 def test_demo_yields_as_many_lines_as_announced(results):
-    assert len(results[1]) == demo.STEPS
+    assert len(results[1]) == demo.STEP_COUNT
 
 
 def test_demo_writes_three_maps_a_picture_and_a_report(results):
@@ -57,7 +57,7 @@ def test_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
 @pytest.mark.papers
 def test_demo_on_real_photos_has_the_same_steps_and_no_errors_section(tmp_path):
     lines = list(demo.real_steps(tmp_path / "new"))
-    assert len(lines) == demo.STEPS and lines[1].split()[:2] == ["bracket", "12"]
+    assert len(lines) == demo.STEP_COUNT and lines[1].split()[:2] == ["bracket", "12"]
     assert "the frames agree to 0.0" in lines[6]
     # fmt: skip
     assert sorted(file.name for file in (tmp_path / "new").iterdir())[1:] == [

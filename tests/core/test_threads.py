@@ -46,7 +46,7 @@ def test_at_most_one_item_per_thread_is_started_ahead(count):
 
 def test_small_images_use_no_threads_and_numpy_error_settings_hold_in_threads(count):
     own = threading.get_ident()
-    for pixels, alone in ((100, True), (threads.PIXELS, count == 1)):
+    for pixels, alone in ((100, True), (threads.MIN_PIXELS_FOR_THREAD, count == 1)):
         with np.errstate(divide="raise"), pytest.raises(FloatingPointError):
             list(
                 threads.map_in_threads(lambda n: np.float32(1) / n, [np.float32(0)], pixels=pixels)
@@ -56,7 +56,7 @@ def test_small_images_use_no_threads_and_numpy_error_settings_hold_in_threads(co
 
 
 def test_a_large_picture_is_the_same_in_bands(monkeypatch):
-    monkeypatch.setattr(threads, "PIXELS", 1 << 19)
+    monkeypatch.setattr(threads, "MIN_PIXELS_FOR_THREAD", 1 << 19)
     E = np.random.default_rng(1).uniform(0.01, 9, (820, 650, 3)).astype(np.float32)
     L = colour.luminance(E)
     Ld = _bands.banded(lambda L: L / (1 + L), L)
@@ -84,7 +84,7 @@ def test_an_error_in_background_work_is_raised_by_result():
 
 
 def test_work_on_a_small_image_runs_in_the_calling_thread():
-    task = threads.run_in_background(threading.get_ident, pixels=threads.PIXELS - 1)
+    task = threads.run_in_background(threading.get_ident, pixels=threads.MIN_PIXELS_FOR_THREAD - 1)
     assert task.result() == threading.get_ident()
 
 

@@ -160,7 +160,7 @@ def test_the_verdict_on_flicker_is_the_same_for_other_exposure_times_within_a_mi
 @pytest.mark.papers
 def test_the_verdict_on_flicker_is_the_same_with_one_thread(flickering, monkeypatch):
     expected = verdict(flickering(3))
-    monkeypatch.setattr(threads, "PIXELS", 1)
+    monkeypatch.setattr(threads, "MIN_PIXELS_FOR_THREAD", 1)
     for count in (1, 4):
         monkeypatch.setattr(threads, "THREADS", count)
         assert verdict(flickering(3)) == expected

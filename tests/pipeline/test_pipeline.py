@@ -14,7 +14,7 @@ from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, responses
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
-from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics import causes, consistency
 from hdrlab.fast import merge as quick
 from hdrlab.pipeline import assemble, assemble_steps, catalogue, develop
 from hdrlab.pipeline.alignment import register
@@ -217,7 +217,7 @@ def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction():
     masked = assemble(bracket(images, taken.times, valid=valid), align="none")
     assert masked.spread < 0.05 and masked.warnings == ()
     blind = consistency.measure_level_exposures(images, taken.times, masked.E)
-    assert consistency.measure_spread(blind) > pipeline.CONTRADICTION
+    assert consistency.measure_spread(blind) > causes.MAX_EXPLAINED_SPREAD
 
 
 def test_assemble_does_not_change_its_bracket(hand_held):
@@ -237,7 +237,7 @@ def test_wrong_times_give_a_warning_that_names_the_frames(room):
         taken, times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e")
     )
     assembly = assemble(wrong, align="none", times="stated")
-    assert len(assembly.warnings) == 1 and assembly.spread > pipeline.CONTRADICTION
+    assert len(assembly.warnings) == 1 and assembly.spread > causes.MAX_EXPLAINED_SPREAD
     for deviation in ("b by +1", "c by -0.9"):
         assert deviation in assembly.warnings[0]
     assert assemble(taken, align="none").warnings == ()

@@ -89,9 +89,11 @@ def test_a_sharp_edge_misaligned_by_a_pixel_is_not_a_ghost(wall):
     E = merge_with_quality(images, times, FILM, W).E
     plain = deviation.measure_deviation(frames.calibrate_frames(images, times, FILM, E), W)
     assert np.sqrt(plain.v).max() > 0.5  # the door's edge is as contradictory as any ghost
-    assert deviation.score_contradiction(plain, tau=ghosts.TAU, edge=0).max() > 3
-    assert deviation.score_contradiction(plain, tau=ghosts.TAU, edge=0.5).max() < 1.1
-    score = deviation.score_contradiction(plain, tau=ghosts.TAU, edge=ghosts.EDGE)
+    assert deviation.score_contradiction(plain, tau=ghosts.LOG_TOLERANCE, edge=0).max() > 3
+    assert deviation.score_contradiction(plain, tau=ghosts.LOG_TOLERANCE, edge=0.5).max() < 1.1
+    score = deviation.score_contradiction(
+        plain, tau=ghosts.LOG_TOLERANCE, edge=ghosts.EDGE_FRACTION
+    )
     assert not regions.find_seeds(score).any()
 
 

@@ -13,7 +13,7 @@ from hdrlab.core import colour
 from hdrlab.core.picture import Statistics, statistics
 from hdrlab.pipeline import catalogue
 from hdrlab.show.pages import contact
-from hdrlab.show.pages.sheet import GAP, Entry, draw, write_sheet
+from hdrlab.show.pages.sheet import GAP_WIDTH, Entry, draw, write_sheet
 from hdrlab.show.pictures import render
 from hdrlab.tonemap import quality
 
@@ -84,7 +84,7 @@ def test_picture_of_the_sheets_size_is_not_resampled(shape):
     shown_entry = entry(shape=shape)
     pixels = render(draw([shown_entry]))
     top = 44
-    left = GAP
+    left = GAP_WIDTH
     shown = pixels[top : top + shape[0], left : left + shape[1]]
     picture = (
         shown_entry.picture

@@ -423,5 +423,5 @@ def luminance_of(colour):
 
 
 def test_colors_of_pixel_quality_flags_differ_in_lightness():
-    light = sorted(luminance_of(colour) for colour in figures.KNOWN.values())
+    light = sorted(luminance_of(colour) for colour in figures.FLAG_COLORS.values())
     assert min((b + 0.05) / (a + 0.05) for a, b in zip(light, light[1:], strict=False)) > 1.1

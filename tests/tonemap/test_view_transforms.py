@@ -85,7 +85,7 @@ def test_the_sigmoid_of_agx_agrees_with_the_published_polynomial():
 def test_the_inset_of_agx_follows_from_primaries_at_1_25_times_their_distance_from_white():
     points = np.reshape(gamut.SRGB, (4, 2))
     white = points[3]
-    far = (white + (points - white) / agx.KEPT).ravel()
+    far = (white + (points - white) / agx.OWN_FRACTION).ravel()
     assert np.allclose(agx.inset(np.eye(3)).T, gamut.conversion_matrix(gamut.SRGB, far), atol=1e-5)
 
 

@@ -32,7 +32,7 @@ from hdrlab.course.variants import rewording
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 
 # relative difference that float32 or another solver may cause
-ROUNDING = 1e-3
+ROUNDING_ERROR = 1e-3
 # part of the difference to the library that a wrong function may leave unexplained
 MAX_UNEXPLAINED = 0.1
 # the difference of answers that cannot be compared, such as two shapes
@@ -64,7 +64,7 @@ class ComparedCall:
     @property
     def is_right(self) -> bool:
         """Whether the answer agrees with the library's."""
-        return self.error <= ROUNDING
+        return self.error <= ROUNDING_ERROR
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,7 +272,7 @@ def _is_contradicted(mistake: KnownMistake, calls: Sequence[ComparedCall]) -> bo
     """Return whether a mistake would have given wrong answers, but others than the student's."""
     for call in calls:
         answer = in_gauge(mistake.task, call_quietly(mistake.function, call.args, call.kwargs))
-        if difference(answer, call.truth) > ROUNDING and not _agrees(call, answer):
+        if difference(answer, call.truth) > ROUNDING_ERROR and not _agrees(call, answer):
             return True
     return False
 
@@ -284,7 +284,7 @@ def _agrees(call: ComparedCall, answer: Any) -> bool:
 
 def _tolerance(call: ComparedCall) -> float:
     """Return the difference that a wrong function may have to the student's answer."""
-    return max(ROUNDING, MAX_UNEXPLAINED * min(call.error, 1.0))
+    return max(ROUNDING_ERROR, MAX_UNEXPLAINED * min(call.error, 1.0))
 
 
 def _is_as_good(
@@ -293,7 +293,7 @@ def _is_as_good(
     """Return whether a mistake explains as many checks as the best one, and this one as well."""
     if len(explained[other]) < len(explained[best]):
         return False
-    return explained[other][place] - explained[best][place] <= ROUNDING
+    return explained[other][place] - explained[best][place] <= ROUNDING_ERROR
 
 
 def _inverse_responses(states: Any) -> list[Any]:

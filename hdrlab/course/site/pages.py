@@ -27,8 +27,8 @@ from hdrlab.show.pages.templates import render_page
 PAGES = Path(__file__).parent / "pages"
 STORY = PAGES / "story.ipynb"  # its last figure is on the first page, too
 # makes GitHub Pages serve files whose names begin with _; its text identifies a site of hdrlab
-MARK = ".nojekyll"
-MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
+MARKER_FILE = ".nojekyll"
+MARKER_TEXT = b"Made by hdrlab site, which replaces what is in this folder.\n"
 WIDGETS = "_widgets"  # folder of the exported widgets
 # the build removes outdated files from these folders
 OWN_FOLDERS = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
@@ -72,14 +72,18 @@ def claim(out: Path) -> Path:
     ValueError
         If `out` is neither empty nor a previous site: a build removes outdated pages.
     """
-    mark = out / MARK
+    mark = out / MARKER_FILE
     if out.exists() and not out.is_dir():
         raise InputError(f"expected a folder to write the site to, {out} is a file")
-    if out.exists() and any(out.iterdir()) and not (mark.exists() and mark.read_bytes() == MADE):
+    if (
+        out.exists()
+        and any(out.iterdir())
+        and not (mark.exists() and mark.read_bytes() == MARKER_TEXT)
+    ):
         raise InputError(
             f"{out} is neither empty nor an hdrlab site; choose another folder with --out"
         )
-    live.write_changed(mark, MADE)
+    live.write_changed(mark, MARKER_TEXT)
     return make_cache(out)
 
 

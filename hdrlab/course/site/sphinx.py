@@ -13,14 +13,14 @@ from hdrlab.course.site import formulas, reference
 
 HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
-NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
+DOTTED_NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
 # letters that a page's description has at least, and at most
-SAYING = 40
-SUMMARY = 200
-GLYPH = re.compile(r"<symbol .*?</symbol>", re.DOTALL)
+MIN_SUMMARY_LENGTH = 40
+MAX_SUMMARY_LENGTH = 200
+GLYPH_SYMBOL = re.compile(r"<symbol .*?</symbol>", re.DOTALL)
 # From a source to its place in the reference: viewcode names the module from which it came there
 # first
-BACK = re.compile(
+BACK_LINK = re.compile(
     r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*'
 )
 SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
@@ -94,8 +94,10 @@ def _describe(app: Any, page: str, template: str, context: dict[str, Any], doctr
 
     context["site"] = app.config.html_baseurl
     for part in doctree.findall(nodes.paragraph) if doctree else ():
-        if next(part.findall(nodes.math), None) is None and len(part.astext()) > SAYING:
-            context["summary"] = textwrap.shorten(part.astext(), SUMMARY, placeholder=" …")
+        if next(part.findall(nodes.math), None) is None and len(part.astext()) > MIN_SUMMARY_LENGTH:
+            context["summary"] = textwrap.shorten(
+                part.astext(), MAX_SUMMARY_LENGTH, placeholder=" …"
+            )
             return
 
 
@@ -107,12 +109,12 @@ def _typeset(app: Any, page: str, template: str, context: dict[str, Any], doctre
     drawn: dict[str, int] = {}
 
     def broken(table: re.Match[str]) -> str:
-        return NAME.sub(lambda name: re.sub(r"([._])(?=.)", r"\1<wbr>", name[0]), table[0])
+        return DOTTED_NAME.sub(lambda name: re.sub(r"([._])(?=.)", r"\1<wbr>", name[0]), table[0])
 
     def once(glyph: re.Match[str]) -> str:
         return glyph[0] if drawn.setdefault(glyph[0], glyph.start()) == glyph.start() else ""
 
     if "body" in context:
-        context["body"] = GLYPH.sub(once, TABLE.sub(broken, context["body"]))
+        context["body"] = GLYPH_SYMBOL.sub(once, TABLE.sub(broken, context["body"]))
         if page.startswith("_modules/"):
-            context["body"] = BACK.sub(r"\1#hdrlab.\3.\2", context["body"])
+            context["body"] = BACK_LINK.sub(r"\1#hdrlab.\3.\2", context["body"])

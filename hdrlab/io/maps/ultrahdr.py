@@ -46,7 +46,7 @@ FLAG_COMMON_DENOMINATOR = 0x08
 # The newest version of the metadata that hdrlab reads.
 SUPPORTED_VERSION = 0
 # Two headrooms, and for each channel min, max, gamma and two offsets.
-HEADROOMS = 2
+HEADROOM_COUNT = 2
 VALUES_PER_CHANNEL = 5
 # Whether the numerators of a channel's values are signed: those of min, max and the offsets are.
 # All denominators, and the numerators of headrooms and gamma, are unsigned.
@@ -303,8 +303,8 @@ def _read_metadata(jpeg: bytes) -> GainMapMetadata:
         body = jpeg[start + len(ISO) :]
         values = _values_from_binary(body)
         in_base_primaries = bool(_read_flags(body) & FLAG_USE_BASE_COLOR_SPACE)
-    min_headroom, max_headroom = values[:HEADROOMS]
-    channels = values[HEADROOMS:].reshape(-1, VALUES_PER_CHANNEL).T.astype(np.float32)
+    min_headroom, max_headroom = values[:HEADROOM_COUNT]
+    channels = values[HEADROOM_COUNT:].reshape(-1, VALUES_PER_CHANNEL).T.astype(np.float32)
     low, high, gamma, offset_sdr, offset_hdr = channels
     metadata = GainMapMetadata(low, high, gamma, offset_sdr, offset_hdr, in_base_primaries)
     is_within_range = bool(np.all(np.abs(values) <= MAX_GAIN_STOPS))
@@ -334,7 +334,7 @@ def _values_from_binary(body: bytes) -> F64:
     """Return headrooms and channel values as ISO 21496-1 stores them: fractions behind flags."""
     flags = _read_flags(body)
     channels = 3 if flags & FLAG_MULTICHANNEL else 1
-    is_signed = np.array((False,) * HEADROOMS + HAS_SIGNED_NUMERATOR * channels)
+    is_signed = np.array((False,) * HEADROOM_COUNT + HAS_SIGNED_NUMERATOR * channels)
     count = len(is_signed)
     has_common_denominator = bool(flags & FLAG_COMMON_DENOMINATOR)
     stored = count + 1 if has_common_denominator else 2 * count

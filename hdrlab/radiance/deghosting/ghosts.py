@@ -43,14 +43,14 @@ from hdrlab.radiance.merge import Merged, merge_with_quality
 # a region grows by up to this many margins at once
 GROWTH_MARGINS = 4
 # per cent of the pixels; if more of them contradict each other, motion is hardly the reason
-WIDESPREAD = 50
+WIDESPREAD_PERCENT = 50
 # growing finds the whole figure of a reference frame after one or two iterations
 MAX_GROWTH_ITERATIONS = 4
 # in ln E: contradiction that is tolerated everywhere, in addition to noise and edges
-TAU = 0.1
+LOG_TOLERANCE = 0.1
 # fraction of a frame's range of ln E over 3 x 3 pixels that is tolerated in addition; with 0.5, no
 # edge counts that is displaced by up to a pixel
-EDGE = 0.35
+EDGE_FRACTION = 0.35
 
 
 class Regions(NamedTuple):
@@ -88,7 +88,9 @@ class Ghosts:
 def detect_motion(
     found: deviation.Deviation, *, tau: float, edge: float, margin: int
 ) -> tuple[F32, Mask]:
-    """Return the score (H, W) and the mask (H, W) of moving pixels: see TAU and EDGE.
+    """Return the score (H, W) and the mask (H, W) of moving pixels.
+
+    For tau and edge, see LOG_TOLERANCE and EDGE_FRACTION.
 
     Seeds have a score above 1. The mask grows from them over weaker contradictions, with half of
     tau and a fifth of `edge`, and then by the margin.
@@ -112,7 +114,7 @@ def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> 
         high=np.full_like(E, np.inf),
     )
     frame = reference.read_frame(taken, j, box)
-    return ~reference.find_consistent(frame, plain, tau=2 * reference.TAU)
+    return ~reference.find_consistent(frame, plain, tau=2 * reference.RELATIVE_TOLERANCE)
 
 
 def find_still(taken: Calibrated, box: regions.Box, E: F32) -> Mask:
@@ -224,7 +226,9 @@ def remove_ghosts(
     contradiction = deviation.measure_deviation(taken, w)
     # neither noise nor edges explain these
     contradiction.v[deviation.find_clipped_elsewhere(taken, plain)] = np.inf
-    score, moved = detect_motion(contradiction, tau=TAU, edge=EDGE, margin=margin)
+    score, moved = detect_motion(
+        contradiction, tau=LOG_TOLERANCE, edge=EDGE_FRACTION, margin=margin
+    )
 
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
@@ -260,6 +264,6 @@ def note(result: Ghosts, names: Sequence[str]) -> str:
     text = (
         f"something moved in {number}, {percent:.1f} % of the pixels; reference photos: {per_frame}"
     )
-    if percent < WIDESPREAD:
+    if percent < WIDESPREAD_PERCENT:
         return text
     return f"{text}; with so many pixels, wrong times or a wrong alignment are more likely"

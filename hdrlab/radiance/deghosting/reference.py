@@ -30,7 +30,7 @@ INDEPENDENT_PIXELS = 10
 MAX_SHIFT = 0.5
 MAX_STANDARD_DEVIATIONS = 3.0
 # relative difference that is tolerated in a static scene, as no response is known much better
-TAU = 0.05
+RELATIVE_TOLERANCE = 0.05
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ def consistent_steps(
     yield reference, np.ones(known.E.shape[:2], bool), known
     for j in order_by_exposure(reference, taken.times)[1:]:
         other = read_frame(taken, j, box)
-        where = find_consistent(known, other, tau=TAU)
+        where = find_consistent(known, other, tau=RELATIVE_TOLERANCE)
         known = join(known, other, where)
         yield j, where, known
 

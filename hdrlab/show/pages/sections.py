@@ -104,7 +104,7 @@ def _false_color_figure(
 def known(quality: Flags, picture: Image) -> dict[str, Any]:
     """Return the pixels of each quality flag, and a figure of the pixels that were not measured."""
     masks = {}
-    for flag in (Quality.MEASURED, *figures.KNOWN):
+    for flag in (Quality.MEASURED, *figures.FLAG_COLORS):
         mask = quality == flag
         if flag == Quality.MEASURED or mask.any():
             masks[flag] = mask
@@ -113,7 +113,7 @@ def known(quality: Flags, picture: Image) -> dict[str, Any]:
         alt = "The picture in pale gray, with dots where a pixel was not measured"
         image = figures.known(picture, quality)
         illustration = figures.photograph(image, MAX_MAP_SIDE, alt)
-    return {"masks": masks, "colours": figures.KNOWN, "picture": illustration}
+    return {"masks": masks, "colours": figures.FLAG_COLORS, "picture": illustration}
 
 
 def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:

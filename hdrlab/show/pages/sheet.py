@@ -27,7 +27,7 @@ PIXELS_PER_INCH = 100
 PICTURE_SIDE = 480
 MIN_TEXT_WIDTH = 320
 CAPTION_HEIGHT = 86
-GAP = 14
+GAP_WIDTH = 14
 TITLE_TOP = 12
 TITLE_MARGIN = 24
 TITLE_LINE_HEIGHT = 20
@@ -133,7 +133,7 @@ def _make_layout(shape: tuple[int, ...], count: int, columns: int | None) -> _La
     h, w = shape[:2]
     picture_width = max(1, round(PICTURE_SIDE * w / max(h, w)))
     picture_height = max(1, round(PICTURE_SIDE * h / max(h, w)))
-    cell_width = max(picture_width, MIN_TEXT_WIDTH) + GAP
+    cell_width = max(picture_width, MIN_TEXT_WIDTH) + GAP_WIDTH
     cell_height = picture_height + CAPTION_HEIGHT
     if columns is None:
         columns = max(1, round((ASPECT_RATIO * count * cell_height / cell_width) ** 0.5))
@@ -165,7 +165,7 @@ def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = Non
         raise InputError(f"expected columns >= 1, got {columns}")
     layout = _make_layout(entries[0].picture.shape, len(entries), columns)
     rows = -(-len(entries) // layout.columns)
-    width = layout.columns * layout.cell_width + GAP
+    width = layout.columns * layout.cell_width + GAP_WIDTH
     title_lines = _wrap(title or "Tone mapping", width, TITLE_LETTER_WIDTH)
     legend_lines = _wrap(LEGEND_FILE.read_text("utf8"), width, LEGEND_LETTER_WIDTH)
     pictures_top = TITLE_MARGIN + TITLE_LINE_HEIGHT * len(title_lines)
@@ -174,13 +174,13 @@ def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = Non
     size = (width / PIXELS_PER_INCH, height / PIXELS_PER_INCH)
     figure = Figure(figsize=size, dpi=PIXELS_PER_INCH, facecolor="white")
     figure.set_label(alt_text(entries, title))
-    _write(figure, GAP, TITLE_TOP, "\n".join(title_lines), fontsize=13, fontweight="bold")
+    _write(figure, GAP_WIDTH, TITLE_TOP, "\n".join(title_lines), fontsize=13, fontweight="bold")
     for i, entry in enumerate(entries):
         row, column = divmod(i, layout.columns)
-        left = GAP + column * layout.cell_width
+        left = GAP_WIDTH + column * layout.cell_width
         top = pictures_top + row * layout.cell_height
         _draw_entry(figure, entry, left, top, layout)
-    _write(figure, GAP, legend_top, "\n".join(legend_lines), fontsize=8, color="#404040")
+    _write(figure, GAP_WIDTH, legend_top, "\n".join(legend_lines), fontsize=8, color="#404040")
     return figure
 
 
@@ -224,7 +224,7 @@ def _write(figure: Figure, x: float, y: float, text: str, **options: Any) -> Non
 
 def _wrap(text: str, width: int, letter_width: int) -> list[str]:
     """Return a text in lines that fit a sheet, for letters of this mean width in pixels."""
-    letters = (width - 2 * GAP) // letter_width
+    letters = (width - 2 * GAP_WIDTH) // letter_width
     lines = []
     for paragraph in text.split("\n"):
         lines += wrap(paragraph, letters)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hdrlab.core import arrays, colour, extremes
+from hdrlab.diagnostics.causes import MAX_EXPLAINED_SPREAD
 
 if TYPE_CHECKING:
     from hdrlab.pipeline.assembly import Assembly
@@ -63,13 +64,11 @@ def offset(pixels: arrays.ArrayLike) -> str:
 
 def verdict(spread: float) -> str:
     """Return in words how well frames agree whose spread is this, in stops."""
-    from hdrlab.pipeline.stages import CONTRADICTION  # large, and figures do without it
-
     if np.isnan(spread):
         return "no pixel value occurs in two frames"
     if spread <= AGREEMENT_STOPS:
         return "they agree"
-    if spread <= CONTRADICTION:
+    if spread <= MAX_EXPLAINED_SPREAD:
         return "they agree roughly"
     return "they contradict each other"
 

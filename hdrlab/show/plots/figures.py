@@ -34,7 +34,7 @@ CSS_PIXELS_PER_INCH = 96
 RANGE_PERCENTILES = (0.1, 99.9)
 COLORS_PER_SCALE = 17
 # Colors of pixels that were not measured, from dark to light, so that they differ in gray too.
-KNOWN = {
+FLAG_COLORS = {
     Quality.DARK: "#14148C",
     Quality.UNSEEN: "#404040",
     Quality.STUCK: "#D6007F",
@@ -92,7 +92,7 @@ def _grow(labels: NDArray[Any], size: int) -> NDArray[Any]:
 def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
     """Return the picture in pale gray, with a dot in its flag's color for each unmeasured pixel."""
     image = _pale_gray(picture).astype(np.uint8)
-    for flag, color in KNOWN.items():
+    for flag, color in FLAG_COLORS.items():
         spots = _grow(quality == flag, size=dot(quality.shape))
         image[spots] = tuple(bytes.fromhex(color[1:]))
     return image

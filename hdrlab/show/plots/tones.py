@@ -31,7 +31,7 @@ SIGNED_COLOR_SCALE = "PuOr_r"
 # Lengths are in inches.
 SINGLE_MAP_WIDTH = 5.4
 MAP_WIDTH = 3.4
-GAP = 0.1
+GAP_WIDTH = 0.1
 SCALE_HEIGHT = 0.68
 TITLE_HEIGHT = 0.3
 NO_TITLE_HEIGHT = 0.08
@@ -181,11 +181,11 @@ def _make_axes(arrays: list[F64], *, has_titles: bool) -> list[Axes]:
     count = len(arrays)
     h, w = arrays[0].shape
     width = SINGLE_MAP_WIDTH if count == 1 else MAP_WIDTH * count
-    map_width = (width - GAP * (count + 1)) / count
+    map_width = (width - GAP_WIDTH * (count + 1)) / count
     map_height = map_width * h / w
     title_height = TITLE_HEIGHT if has_titles else NO_TITLE_HEIGHT
     height = title_height + map_height + SCALE_HEIGHT
-    lefts = [GAP + k * (map_width + GAP) for k in range(count)]
+    lefts = [GAP_WIDTH + k * (map_width + GAP_WIDTH) for k in range(count)]
     places = [
         (left / width, SCALE_HEIGHT / height, map_width / width, map_height / height)
         for left in lefts

@@ -23,7 +23,7 @@ from hdrlab.tonemap import fattal
 MIN_PIXELS = 8
 MAX_PIXELS = 400
 # Slopes below this multiple of the mean slope are amplified no more than it, as in `tonemap.fattal`.
-NOISE = 0.01
+MIN_RELATIVE_SLOPE = 0.01
 ALPHA_RANGE = (0.01, 1.0)
 BETA_RANGE = (0.1, 1.0)
 # The axis of luminance goes this far beyond the line at both ends, as a fraction of its range.
@@ -36,7 +36,7 @@ class GradientLine(Widget):
     _esm = script("drag.js", "lines.js", "gradients.js")
     line = traitlets.List(traitlets.Float()).tag(sync=True)
     span = traitlets.List(traitlets.Float()).tag(sync=True)  # ends of the axis of the line
-    noise = traitlets.Float(NOISE).tag(sync=True)
+    noise = traitlets.Float(MIN_RELATIVE_SLOPE).tag(sync=True)
     alpha_range = traitlets.List(traitlets.Float()).tag(sync=True)
     beta_range = traitlets.List(traitlets.Float()).tag(sync=True)
     alpha = traitlets.Float(1.0).tag(sync=True)
@@ -101,7 +101,9 @@ def gradient_line(
     slope = np.abs(G)
     if not slope.any():
         raise InputError("expected a line with different values, got only equal ones")
-    phi = fattal.attenuation(slope, float(slope.mean()), alpha=alpha, beta=beta, noise=NOISE)
+    phi = fattal.attenuation(
+        slope, float(slope.mean()), alpha=alpha, beta=beta, noise=MIN_RELATIVE_SLOPE
+    )
     lLd = lL[0] + np.append(0, np.cumsum(phi * G))
     margin = MARGIN_FRACTION * np.ptp(lL)
     span = (float(lL.min() - margin), float(lL.max() + margin))

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.tonemap.durand import NEAR
+from hdrlab.tonemap.durand import UNCERTAIN_SIGMA
 
 
 @mistake(
@@ -19,7 +19,7 @@ def certainty_linear(mean, k, *, sigma_s):
     if enough <= 1 or k.min() >= enough:
         return mean
     u = np.clip(k, 1, enough) / enough
-    return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
+    return mean + (1 - u) * (gaussian_filter(mean, UNCERTAIN_SIGMA) - mean)
 
 
 @mistake(
@@ -32,7 +32,7 @@ def root_forgotten(mean, k, *, sigma_s):
     if enough <= 1 or k.min() >= enough:
         return mean
     u = np.log(np.clip(k, 1, enough)) / math.log(enough)
-    return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
+    return mean + (1 - u) * (gaussian_filter(mean, UNCERTAIN_SIGMA) - mean)
 
 
 @mistake(
@@ -45,4 +45,4 @@ def not_clipped(mean, k, *, sigma_s):
     if enough <= 1 or k.min() >= enough:
         return mean
     u = np.log(k) / math.log(enough)
-    return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
+    return mean + (1 - u) * (gaussian_filter(mean, UNCERTAIN_SIGMA) - mean)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hdrlab.course.checks.mistakes import mistake
-from hdrlab.tonemap.transfer import BRIGHTEST, C1, C2, C3, M1, M2, within
+from hdrlab.tonemap.transfer import C1, C2, C3, M1, M2, PEAK_LUMINANCE, within
 
 
 @mistake(
@@ -11,7 +11,7 @@ from hdrlab.tonemap.transfer import BRIGHTEST, C1, C2, C3, M1, M2, within
     says="You raise Y to 1 / m1, as in the inverse function. From luminance to signal, use Y^m1.",
 )
 def inverted_first_power(FD):
-    Ym = (within(FD, BRIGHTEST) / BRIGHTEST) ** (1 / M1)
+    Ym = (within(FD, PEAK_LUMINANCE) / PEAK_LUMINANCE) ** (1 / M1)
     return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2
 
 
@@ -21,5 +21,5 @@ def inverted_first_power(FD):
     "cd/m2.",
 )
 def over_the_brightest_of_the_picture(FD):
-    Ym = (within(FD, BRIGHTEST) / np.max(FD)) ** M1
+    Ym = (within(FD, PEAK_LUMINANCE) / np.max(FD)) ** M1
     return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2

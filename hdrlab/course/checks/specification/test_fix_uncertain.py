@@ -64,7 +64,7 @@ def test_a_pixel_without_similar_neighbors_takes_the_blur(subject, rng):
     """
     mean, k = draw_inputs(rng)
     k[...] = rng.uniform(0.5, 1, k.shape)
-    smooth = gaussian_filter(mean.astype(np.float64), durand.NEAR)[INNER]
+    smooth = gaussian_filter(mean.astype(np.float64), durand.UNCERTAIN_SIGMA)[INNER]
     same(
         subject.fix_uncertain(mean, k, sigma_s=6.0)[INNER],
         smooth,

@@ -20,7 +20,7 @@ from hdrlab.errors import HdrlabError, InputError
 from hdrlab.io import album, photos, radiance
 from hdrlab.io.decode import PhotoHeader, read_header
 from hdrlab.io.exif_exposure import equivalent_seconds, fill_missing, luminance_of_unit
-from hdrlab.io.reduce import KINDS, reduce_photo
+from hdrlab.io.reduce import READABLE_FORMATS, reduce_photo
 from hdrlab.io.times import parse_number
 from hdrlab.pipeline import Assembly, pictures
 from hdrlab.show.pages import wording
@@ -140,7 +140,7 @@ class OwnPhotos:
         path = self.photo_folder / name
         try:
             stated = read_header(path)
-            if stated.kind not in KINDS or stated.dtype != np.uint8:
+            if stated.kind not in READABLE_FORMATS or stated.dtype != np.uint8:
                 raise InputError(f"{name}: this page reads JPEG and 8-bit PNG only; install hdrlab")
             merged = stated
             height, width = stated.shape[:2]

@@ -26,16 +26,16 @@ from hdrlab.show.plots import (
 )
 
 # The colors of full pixels, of pixels lost in noise, and of the others.
-FULL = "#D55E00"
-NOISE = "#0072B2"
+FULL_COLOR = "#D55E00"
+NOISE_COLOR = "#0072B2"
 HELD_COLOR = "#B8B8B8"
 FULL_RGB = np.array([213, 94, 0], np.uint8)
 NOISE_RGB = np.array([0, 114, 178], np.uint8)
 # Label, color and hatching of the pixels that are lost in noise, recorded, and full.
 PIXEL_KINDS = (
-    ("lost in noise", NOISE, "///"),
+    ("lost in noise", NOISE_COLOR, "///"),
     ("recorded", HELD_COLOR, ""),
-    ("full", FULL, "..."),
+    ("full", FULL_COLOR, "..."),
 )
 BIN_COUNT = 60
 # A logarithmic axis cannot begin at 0.
@@ -127,7 +127,7 @@ def coverage(plan: planning.Plan, low: float, high: float) -> Axes:
     ax = axes()
     ax.axvspan(low, high, color=HELD_COLOR, alpha=0.45, label="the scene", linewidth=0)
     for row, (name, (dark, bright)) in enumerate(zip(plan.names, plan.holds, strict=True)):
-        ax.plot([dark, bright], [row, row], color=NOISE, linewidth=7, solid_capstyle="butt")
+        ax.plot([dark, bright], [row, row], color=NOISE_COLOR, linewidth=7, solid_capstyle="butt")
         ax.annotate(
             f"{name} s", (np.sqrt(dark * bright), row - 0.22), ha="center", va="bottom", fontsize=9
         )
