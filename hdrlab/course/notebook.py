@@ -44,6 +44,9 @@ _planned: dict[str, plans.Homework] = {}
 class Feedback:
     """A Result, shown as HTML in a notebook and as plain text elsewhere."""
 
+    # whether the reader must ask to see the likely mistakes
+    folds_mistakes = False
+
     def __init__(self, result: results.Result, homework: plans.Homework) -> None:
         self.result = result
         self.homework = homework
@@ -61,11 +64,15 @@ class Feedback:
         earned = sum(_latest[task.id].score for task in self.homework.tasks if task.id in _latest)
         label = f"{self.homework.name} so far"
         bar = feedback.bar(min(earned, max_points), max_points, label)
-        return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{bar}</div>'
+        fragment = feedback.fragment(self.result, fold_mistakes=self.folds_mistakes)
+        return f'<div class="hdrlab-check">{fragment}{bar}</div>'
 
 
 class FeedbackWithTutor(Feedback):
     """The Feedback of failed checks, with a button for each task about which the tutor can ask."""
+
+    # the tutor's questions lead to them
+    folds_mistakes = True
 
     def _ipython_display_(self) -> None:
         """Show the feedback, and below it the buttons. Without a kernel, show the feedback alone."""

@@ -12,8 +12,9 @@ Nothing here is used in grading. The inputs are those of the table of mistakes a
 counterexamples, so they reveal nothing of hidden checks. Her function runs in the sandbox of `check`.
 """
 
+import ast
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
@@ -40,8 +41,8 @@ from hdrlab.show.widgets.dialogue import Steps
 QUESTION_COUNT = 3
 # of a call: less than in `check`, because a student waits for it
 CALL_TIMEOUT_SECONDS = 3.0
-# simpler inputs that are tried for the first question
-MAX_SIMPLER_INPUTS = 60
+# inputs that are tried for one question
+MAX_CHANGED_INPUTS = 60
 # how checks end for which a function gives no answer at all
 SILENT_KINDS = ("late", "died", "killed", "refused", "damaged")
 # a number that has so few digits can be worked out by hand, and typed
@@ -54,6 +55,7 @@ MAX_OPTIONS = 4
 MAX_PLACES = 300
 # what a stub raises until a student writes the function
 STUB_ERROR = "NotImplementedError"
+Arguments = tuple[tuple[Any, ...], dict[str, Any]]
 # formulas and code in an assignment's sentence
 MARKDOWN_PARTS = re.compile(r"(\$\$.*?\$\$|\$.*?\$|`.*?`)", re.DOTALL)
 
@@ -100,7 +102,7 @@ def ask(
     result: Result,
     options: GradingOptions,
 ) -> Steps:
-    """Yield the steps of the dialogue about a task: questions, and what is said after each, as HTML.
+    """Yield the steps of the dialogue about a task: questions, and the text after each, as HTML.
 
     Parameters
     ----------
@@ -164,15 +166,19 @@ class Tutor:
                 "Run the check again."
             )
             return
+        asks_for_sentence = len(steps) < QUESTION_COUNT
+        quoted = ""
         for number, step in enumerate(steps, 1):
             yield self._question(number, step)
-            yield self._explanation(step)
+            shows_sentence = not asks_for_sentence and step.sentence != quoted
+            yield self._explanation(step, shows_sentence=shows_sentence)
+            quoted = step.sentence
         if not steps:
             yield _paragraph(
                 "hdrlab found no small input for which your function is wrong. If you have changed "
                 "it since, run the check again."
             )
-        if len(steps) < QUESTION_COUNT:
+        if asks_for_sentence:
             yield from self._ask_for_sentence(len(steps) + 1, failed, mistakes)
         yield self._closing(steps, mistakes)
 
@@ -219,18 +225,31 @@ class Tutor:
             ]
 
     def _steps_of_counterexample(self, failed: Sequence[Check]) -> list[Step]:
-        """Return a simpler input for which the function is right, and the smallest wrong one."""
+        """Return a simple input for which the function is right, and one for which it is wrong.
+
+        The wrong one is similar to the counterexample, whose right value the student has read in the
+        feedback. If the function is right for all similar ones, it is the counterexample.
+        """
         codes = [check.counterexample.code for check in failed if check.counterexample]
         if not codes:
             return []
-        code = codes[0]
         with self._subject() as subject:
-            whole = self._step(code, subject)
+            whole = self._step(codes[0], subject)
             if whole.is_right:
                 return [whole]
+            code = codes[0]
+            for candidate in self._rewritten(codes[0], similar_inputs):
+                with suppress(Exception):  # the solution may not accept this input
+                    step = self._step(candidate, subject)
+                    is_other = counterexamples.differs(step.right, whole.right)
+                    if is_other and not step.is_right and not step.failure:
+                        code = candidate
+                        whole = step
+                        break
             place = _worst_place(whole.right, whole.yours)
             wrong = self._step(code + place, subject)
-            candidates = [simpler + place for simpler in self._simpler(code)]
+            simpler = self._rewritten(code, shrinking.simpler_inputs)
+            candidates = [text + place for text in simpler]
             candidates += [code + other for other in _places(whole.right)]
             for candidate in candidates:
                 with suppress(Exception):  # the expression may not fit a smaller input
@@ -239,16 +258,18 @@ class Tutor:
                         return [step, wrong]
         return [wrong]
 
-    def _simpler(self, code: str) -> Iterator[str]:
-        """Yield the code of a counterexample with a simpler input."""
+    def _rewritten(
+        self, code: str, change: Callable[[Arguments], Iterable[Arguments]]
+    ) -> Iterator[str]:
+        """Yield the code of a counterexample with other inputs, which `change` makes of its own."""
         inputs, _, last = code.rpartition("\n")
         start = last.index(f"{self._task.id}(")
         call = _balanced(last[start:])
         arguments = snippets.Snippet(tuple(inputs.splitlines()), call).arguments()
         module = _module_of(self._task)
         is_valid = getattr(module, "is_valid_input", None)
-        for number, (args, kwargs) in enumerate(shrinking.simpler_inputs(arguments)):
-            if number == MAX_SIMPLER_INPUTS:
+        for number, (args, kwargs) in enumerate(change(arguments)):
+            if number == MAX_CHANGED_INPUTS:
                 return
             if is_valid is not None and not is_valid(*args, **kwargs):
                 continue
@@ -319,8 +340,8 @@ class Tutor:
         labels = sorted(list(texts)[:MAX_LABELS])
         return labels if len(labels) > 1 else []
 
-    def _explanation(self, step: Step) -> str:
-        """Return what is said after the answer to a question."""
+    def _explanation(self, step: Step, *, shows_sentence: bool) -> str:
+        """Return the text after the answer to a question."""
         name = _code(self._task.name)
         if step.failure:
             parts = [f"<b>Your {name} gives no value:</b> {_code(step.failure)}."]
@@ -331,7 +352,7 @@ class Tutor:
             parts = [f"<b>Your {name} leads to {yours}.</b>"]
         if step.why:
             parts.append(escape(step.why))
-        if step.sentence:
+        if step.sentence and shows_sentence:
             parts.append(f"The assignment says: {_quote(step.sentence)}")
         return _paragraph(" ".join(parts))
 
@@ -360,18 +381,25 @@ class Tutor:
         yield _paragraph(f"The check that failed: {escape(shown.promise)}.")
 
     def _closing(self, steps: Sequence[Step], mistakes: Sequence[KnownMistake]) -> str:
-        """Return the last words: the mistake, and the lines of the student's code."""
+        """Return the end of the dialogue: the mistake, and the lines of the student's code."""
         named = "".join(
             _paragraph(f"<b>Likely mistake:</b> {escape(mistake.sentence)}") for mistake in mistakes
         )
         numbers = self._find_lines(steps, mistakes)
+        source = self._code.sources[self._task.id]
+        only_line = "" if numbers else _only_line(source, self._task.id)
+        if only_line:
+            return named + (
+                "<p>Your function does everything in one line. Compare this line with the sentence "
+                f"of the assignment:</p><pre>{escape(only_line)}</pre>"
+            )
         if not numbers:
             return named + _paragraph(
                 "hdrlab does not know which line of your code it is. Look for the one that should "
                 "do what the sentence of the assignment says."
             )
-        source = self._code.sources[self._task.id].split("\n")
-        texts = "\n".join(source[number - 1].strip() for number in numbers)
+        lines = source.split("\n")
+        texts = "\n".join(lines[number - 1].strip() for number in numbers)
         these = "this line" if len(numbers) == 1 else "these lines"
         return named + (
             f"<p>Look at {these} of your code. With a change in {these} alone, your "
@@ -435,6 +463,25 @@ def run_code(code: str, task: str, function: Callable[..., Any]) -> Any:
     return eval(last, scope)
 
 
+def similar_inputs(arguments: Arguments) -> Iterator[Arguments]:
+    """Yield the arguments of a call with one array doubled, or with its values in reverse order.
+
+    Examples
+    --------
+    >>> [args for args, _ in similar_inputs(((np.array([1, 3]),), {}))]
+    [(array([2, 6]),), (array([3, 1]),)]
+    """
+    args, kwargs = arguments
+    for place, value in enumerate(args):
+        if not isinstance(value, np.ndarray) or value.dtype.kind not in "uif":
+            continue
+        doubled = 2 * value.astype(np.float64)
+        is_integer = value.dtype.kind != "f"
+        if not is_integer or doubled.max(initial=0) <= np.iinfo(value.dtype).max:
+            yield (*args[:place], doubled.astype(value.dtype), *args[place + 1 :]), kwargs
+        yield (*args[:place], np.flip(value), *args[place + 1 :]), kwargs
+
+
 def _module_of(task: Task) -> ModuleType | None:
     """Return the module with the checks of a task, None for an instructor's own."""
     if task.own is not None:
@@ -450,6 +497,20 @@ def _balanced(text: str) -> str:
         if letter == ")" and depth == 0:
             return text[: end + 1]
     return text
+
+
+def _only_line(source: str, name: str) -> str:
+    """Return the line of a function that has one statement in one line, "" for all others."""
+    functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
+    function = next(node for node in functions if node.name == name)
+    statements = [
+        statement
+        for statement in function.body
+        if not (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant))
+    ]
+    if len(statements) != 1 or statements[0].lineno != statements[0].end_lineno:
+        return ""
+    return source.split("\n")[statements[0].lineno - 1].strip()
 
 
 def _worst_place(right: Any, yours: Any) -> str:

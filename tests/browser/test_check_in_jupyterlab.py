@@ -113,7 +113,7 @@ def test_a_student_answers_the_questions_of_the_tutor_by_keyboard(lab, page, axe
         lab.until_done(page)
         assert cell(page, "check-hat").get_by_role("button").count() == 0  # a stub has no questions
         write(page, "task-hat", ENDS_COUNT)
-        answered(page, "hat", "Likely mistake")
+        answered(page, "hat", "Show the likely mistake")
         below = cell(page, "check-hat")
         below.get_by_role("button", name="Ask me three questions about hat").focus()
         page.keyboard.press("Enter")
@@ -123,10 +123,16 @@ def test_a_student_answers_the_questions_of_the_tutor_by_keyboard(lab, page, axe
             page.keyboard.press("Tab")
             page.keyboard.type(answer)
             page.keyboard.press("Enter")
-        below.get_by_text("Look at this line").wait_for(timeout=ANSWER)
+        last = below.get_by_text("Look at this line")
+        last.wait_for(timeout=ANSWER)
+        # the page scrolls to the end of the dialogue
+        page.wait_for_function(
+            "(text) => text.getBoundingClientRect().bottom <= innerHeight",
+            arg=last.element_handle(),
+        )
         said = below.inner_text()
         assert said.count("Yes. The right value") == 2
-        assert "You said 0.6. The right value: 0.5." in said
+        assert "You said: 0.6. The right value: 0.5." in said
         assert "Your hat leads to 0.666667." in said and "Your hat leads to 0.333333." in said
         assert "return np.minimum(z + 1, n - z) / (n // 2)" in said.split("Look at this line")[1]
         page.evaluate(

@@ -1,7 +1,7 @@
-"""What a student reads of a Result: in a notebook, on a page that travels alone, or at a terminal.
+"""Show a Result to a student: in a notebook, as a page in one file, or in a terminal.
 
-Everything that a student wrote, or that their function said, is text here: it is escaped where it
-is put in, and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
+All text from a student or from a student's function is escaped, and the page forbids scripts. Of a
+hidden check, only the outcome is shown.
 """
 
 import re
@@ -14,28 +14,30 @@ from hdrlab.course.grading import results
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 
-# what XML 1.0 cannot hold
+# characters that XML 1.0 does not allow
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def fragment(result: results.Result, *, private: bool = False) -> str:
-    """Return a Result as a piece of a page, for a notebook's output.
+def fragment(result: results.Result, *, private: bool = False, fold_mistakes: bool = False) -> str:
+    """Return a Result as a part of a page, for a notebook's output.
 
     Parameters
     ----------
     result : Result
-    private : whether the reader is the instructor, who sees what hidden checks say, too
+    private : whether the reader is the instructor, who sees the details of hidden checks, too
+    fold_mistakes : whether the reader must ask to see the likely mistakes
     """
-    return str(environment().get_template("feedback.html").module.whole(result, private, True))  # type: ignore[attr-defined]
+    macros = environment().get_template("feedback.html").module
+    return str(macros.whole(result, private, True, fold_mistakes))  # type: ignore[attr-defined]
 
 
 def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
-    """Return how far something has come, as a piece of a page."""
+    """Return a progress bar as a part of a page."""
     return str(environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
 
 
 def page(result: results.Result, *, private: bool = False) -> str:
-    """Return a Result as a page, complete in itself: it fetches nothing and runs nothing."""
+    """Return a Result as a page in one file, which loads nothing and runs no script."""
     return (
         environment()
         .get_template("feedback_page.html")
@@ -45,13 +47,13 @@ def page(result: results.Result, *, private: bool = False) -> str:
 
 
 def text(result: results.Result, *, hints: int = 0, private: bool = False) -> str:
-    """Return a Result as lines for a terminal, with the first so many hints of what does not hold."""
+    """Return a Result as lines for a terminal, with this many hints for each failed check."""
     template = environment().get_template("feedback.plain")
     return template.render(result=result, hints=hints, private=private)
 
 
 def number(value: float) -> str:
-    """Return points as a reader wants them: 7, or 7.5.
+    """Return points with at most two decimals, without trailing zeros.
 
     Examples
     --------
@@ -67,10 +69,10 @@ def _pictures(drawing: results.Drawing) -> list[tuple[str, str, str]]:
     return list(zip(frames, drawing.alts, drawing.captions, strict=True))
 
 
-@cache  # a class has many pages, and the templates are translated once
+@cache  # so that the templates are compiled once for all pages of a class
 def environment() -> jinja2.Environment:
     """Return the templates of a Result, with the filters that they use."""
-    found = templates(Path(__file__).parent)
-    found.filters |= {"pictures": _pictures, "number": number, "points": results.points}
-    found.filters["xml"] = partial(FORBIDDEN.sub, "")
-    return found
+    loaded = templates(Path(__file__).parent)
+    loaded.filters |= {"pictures": _pictures, "number": number, "points": results.points}
+    loaded.filters["xml"] = partial(FORBIDDEN.sub, "")
+    return loaded

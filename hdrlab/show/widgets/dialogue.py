@@ -41,6 +41,7 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
     """
 
     def __init__(self, label: str, start: Callable[[], Steps], *, about: str = "") -> None:
+        self._label = label
         self._start = start
         self._steps: Steps = iter(())
         self.button = ipywidgets.Button(
@@ -65,6 +66,7 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
 
     def begin(self) -> None:
         """Begin the dialogue, or begin it again."""
+        self.button.description = "Begin again"
         self.children = (self._head,)
         self._steps = self._start()
         self._go_on()
@@ -87,7 +89,7 @@ class Dialogue(ipywidgets.VBox):  # type: ignore[misc]  # ipywidgets has no type
 
     def _repr_mimebundle_(self, **kwargs: Any) -> tuple[dict[str, Any], dict[str, Any]]:
         bundle = super()._repr_mimebundle_(**kwargs)
-        text = f"{self.button.description}: run this cell again"
+        text = f"{self._label}: run this cell again"
         return dict(bundle) | {"text/html": f"<p>{escape(text)}</p>", "text/plain": text}, {}
 
 

@@ -79,7 +79,7 @@ function createNumberQuestion(root, model) {
       const difference = `${threeDigits(Math.abs(error))} too ${direction}`;
       return {
         isNear: Math.abs(error) <= NEAR_FRACTION * (high - low),
-        words: isRight ? "Yes" : `You said ${textOf(answer)}, ${difference}`,
+        words: isRight ? "Yes" : `You said: ${textOf(answer)}, ${difference}`,
       };
     },
   };
@@ -87,6 +87,15 @@ function createNumberQuestion(root, model) {
 
 const WHOLE_TOLERANCE = 1e-6; // a whole number must be right
 const ENTRY_TOLERANCE = 0.02; // relative error of another number that counts as near
+
+// The number that a text says, such as "0.5", "0,5" or "1/2", or null.
+function numberIn(text) {
+  const plain = text.trim().replace(",", ".").replace("\u2212", "-");
+  const [numerator, denominator, ...rest] = plain.split("/");
+  if (plain === "" || rest.length > 0) return null;
+  const number = denominator === undefined ? Number(plain) : Number(numerator) / Number(denominator);
+  return Number.isFinite(number) ? number : null;
+}
 
 // A number that the reader types. Enter submits it.
 function createEntryQuestion(root, model, submit) {
@@ -103,12 +112,8 @@ function createEntryQuestion(root, model, submit) {
     if (event.key === "Enter") submit();
   });
   return {
-    request: "Type a number first, or press Show.",
-    read() {
-      const text = input.value.trim().replace(",", ".").replace("\u2212", "-");
-      const number = Number(text);
-      return text === "" || Number.isNaN(number) ? null : number;
-    },
+    request: "Type a number first, such as 0.5 or 1/2, or press Show.",
+    read: () => numberIn(input.value),
     show(answer) {
       input.value = String(answer);
     },
@@ -120,7 +125,7 @@ function createEntryQuestion(root, model, submit) {
       const isWhole = Number.isInteger(truth);
       const tolerance = isWhole ? WHOLE_TOLERANCE : ENTRY_TOLERANCE * Math.abs(truth);
       const isNear = Math.abs(error) <= tolerance;
-      return { isNear, words: isNear ? "Yes" : `You said ${answer}` };
+      return { isNear, words: isNear ? "Yes" : `You said: ${answer}` };
     },
   };
 }
@@ -141,6 +146,18 @@ function resultsOnPage(el) {
   const results = globalThis.hdrlabTallies;
   if (!results.has(page)) results.set(page, new Map());
   return results.get(page);
+}
+
+// In a dialogue, Python adds the next steps below a question. Scroll to the last one.
+function followDialogue(el) {
+  const dialogue = el.closest(".widget-vbox");
+  if (!dialogue || dialogue.dataset.hdrlabFollows) return;
+  dialogue.dataset.hdrlabFollows = "true";
+  const scrollToLast = () => {
+    const block = "nearest"; // do not move what is visible already
+    requestAnimationFrame(() => dialogue.lastElementChild.scrollIntoView({ block }));
+  };
+  new MutationObserver(scrollToLast).observe(dialogue, { childList: true });
 }
 
 async function render({ model, el }) {
@@ -187,6 +204,7 @@ async function render({ model, el }) {
     if (answer !== null) {
       const { isNear, words } = question.compare(answer);
       sentences.unshift(`${words}.`);
+      note.classList.add(isNear ? "hdrlab-near" : "hdrlab-far");
       if (isCovering) sentences.push(countResult(isNear));
     }
     return sentences.filter(Boolean).join(" ");
@@ -226,7 +244,10 @@ async function render({ model, el }) {
     if (model.get("given") !== null) question.show(model.get("given"));
     reveal();
   }
-  if (!isCovering) return;
+  if (!isCovering) {
+    requestAnimationFrame(() => followDialogue(el));
+    return;
+  }
   // JupyterLab attaches the widget to the page only after this function.
   requestAnimationFrame(() => {
     updateCoversNow = watchCovers(el);

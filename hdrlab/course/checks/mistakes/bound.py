@@ -7,8 +7,8 @@ from hdrlab.course.checks.mistakes import mistake
 
 @mistake(
     "bound_loosest",
-    says="If several frames give bounds for a pixel, you take the loosest one. Take the tightest:"
-    " that of the shortest clipped frame, or of the longest dark one.",
+    says="If several photos give bounds for a pixel, you take the loosest one. Take the tightest:"
+    " that of the shortest clipped photo, or of the longest dark one.",
 )
 def loosest(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
@@ -42,7 +42,7 @@ def middle_of_radiance(Z, B, g, top, shown):
 
 @mistake(
     "bound_clipped_alone",
-    says="You handle only clipped pixels. A pixel that is dark in all frames has an upper "
+    says="You handle only clipped pixels. A pixel that is dark in all photos has an upper "
     "bound, from the longest of them.",
 )
 def clipped_alone(Z, B, g, top, shown):
@@ -73,7 +73,7 @@ def flags_swapped(Z, B, g, top, shown):
 
 @mistake(
     "bound_hidden_frames_count",
-    says="You use frames that do not show the pixel. `shown` says which frames do.",
+    says="You use photos that do not show the pixel. `shown` says which photos do.",
 )
 def hidden_frames_count(Z, B, g, top, shown):
     B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))

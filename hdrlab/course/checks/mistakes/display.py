@@ -25,7 +25,7 @@ def held_back_by_itself(Lm, adaptation, white=np.inf):
         ),
         Question(
             code="display(np.array([2.0]), np.array([2.0]), white=1)[0]",
-            why="The fraction is 2 (1 + 2) / (1 + 2) = 2. The sheet says: at most 1.",
+            why="The fraction is 2 (1 + 2) / (1 + 2) = 2. The result is at most 1.",
             because=r"$$L_d = \frac",
         ),
         Question(

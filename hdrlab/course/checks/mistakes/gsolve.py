@@ -7,21 +7,22 @@ from hdrlab.response.debevec import Solution
 
 # two photos of two pixels that no straight line fits: g(2) = 6 s / (1 + 10 s) for s = lambda squared
 LAMBDA_INPUTS = "Z = np.array([[0, 2], [0, 1]])\n"
-LAMBDA_WHY = "The sum of squares is smallest for g(2) = 6 s / (1 + 10 s), where s is lambda squared"
+LAMBDA_WHY = r"$6 s / (1 + 10 s)$ with $s = \lambda^2"
 LAMBDA_QUESTIONS = (
     Question(
-        code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(3))[0][2]",
-        why=f"{LAMBDA_WHY}: 6 / 11.",
+        code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 1, np.ones(3))[0][1]",
+        why="One row fixes the middle of the curve: $g(1) = 0$. What remains is $g(2)$. The sum of "
+        rf"squares is smallest if it is {LAMBDA_WHY}$. Use this in the next questions.",
         because=r"$$\sum_{i,j}",
     ),
     Question(
         code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 0.5, np.ones(3))[0][2]",
-        why=f"{LAMBDA_WHY} = 0.25: 1.5 / 3.5.",
+        why=f"{LAMBDA_WHY} = 0.25$: 1.5 / 3.5.",
         because=r"$$\sum_{i,j}",
     ),
     Question(
         code=LAMBDA_INPUTS + "gsolve(Z, np.array([0.0, 1.0]), 0.1, np.ones(3))[0][2]",
-        why=f"{LAMBDA_WHY} = 0.01: 0.06 / 1.1. Nearly without smoothness, g follows the photos.",
+        why=f"{LAMBDA_WHY} = 0.01$: 0.06 / 1.1. Nearly without smoothness, g follows the photos.",
         because=r"$$\sum_{i,j}",
     ),
 )
@@ -249,7 +250,7 @@ def lambda_read_as_1(Z, B, smoothness, w):
             code="Z = np.array([[1, 2]])\n"
             "g, lE = gsolve(Z, np.array([0.0, 0.0]), 1, np.ones(4))\n"
             "g[1]",
-            why="Here n = 4, so g(2) = 0. Both frames have the same time, so g(1) = g(2).",
+            why="Here n = 4, so g(2) = 0. Both photos have the same time, so g(1) = g(2).",
             because=r"$$\sum_{i,j}",
         ),
         Question(
@@ -411,8 +412,8 @@ def lambda_squared_not_weighted(Z, B, smoothness, w):
             "w = np.array([1.0, 1, 1, 0])\n"
             "g, lE = gsolve(Z, np.array([0.0, 1, 5]), 1, w)\n"
             "g[1]",
-            why="The value 3 has the weight 0, so the third frame says nothing. The answer "
-            "is that of two frames.",
+            why="The value 3 has the weight 0, so the third photo says nothing. The answer "
+            "is that of two photos.",
             because=r"$$\sum_{i,j}",
         ),
         Question(
@@ -420,7 +421,7 @@ def lambda_squared_not_weighted(Z, B, smoothness, w):
             "w = np.array([1.0, 1, 1, 0])\n"
             "g, lE = gsolve(Z, np.array([0.0, 1, 100]), 1, w)\n"
             "lE[0]",
-            why="Only the frame with the weight 0 has changed. lE = g(1) - 0 = -1 as before.",
+            why="Only the photo with the weight 0 has changed. lE = g(1) - 0 = -1 as before.",
             because=r"$$\sum_{i,j}",
         ),
     ),

@@ -7,7 +7,7 @@ from hdrlab.course.checks.mistakes import Question, mistake
 
 @mistake(
     "irradiance_black_where_clipped",
-    says="If no frame measures the sample, its irradiance is unknown. You return 0, which would "
+    says="If no photo measures the sample, its irradiance is unknown. You return 0, which would "
     "make the sun black. Return NaN.",
     questions=(
         Question(
@@ -21,14 +21,14 @@ from hdrlab.course.checks.mistakes import Question, mistake
             code="f_inv = np.array([0.0, 1.0, 2.0])\n"
             "w = np.array([0.0, 1.0, 0.0])\n"
             "irradiance(np.array([[2]]), np.array([2.0]), f_inv, w)[0]",
-            why="The value 2 has the weight 0, and there is no other frame: 0 / 0.",
+            why="The value 2 has the weight 0, and there is no other photo: 0 / 0.",
             because="If all weights of a sample are 0",
         ),
         Question(
             code="f_inv = np.array([0.0, 1.0, 2.0])\n"
             "w = np.array([0.0, 1.0, 0.0])\n"
             "irradiance(np.array([[0, 2]]), np.array([1.0, 4.0]), f_inv, w)[0]",
-            why="One frame is black and the other one is clipped. Both have the weight 0, "
+            why="One photo is black and the other one is clipped. Both have the weight 0, "
             "so nothing is known.",
             because="If all weights of a sample are 0",
         ),

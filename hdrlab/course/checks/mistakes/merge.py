@@ -17,21 +17,21 @@ from hdrlab.radiance.merge import CLIPPING_LEVEL, bound, weigh
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.ones((2, 1, 1), np.uint8)\n"
             "merge(images, [1, 1], g, np.ones(256))[0, 0]",
-            why="Here g(1) = 0 and all weights are equal, so each frame says E = 1 / t. Both say 1.",
+            why="Here g(1) = 0 and all weights are equal, so each photo says E = 1 / t. Both say 1.",
             because=r"$$\ln E = \frac",
         ),
         Question(
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.ones((2, 1, 1), np.uint8)\n"
             "merge(images, [1, 0.25], g, np.ones(256))[0, 0]",
-            why="The frames say 1 and 4. The mean of ln 1 and ln 4 is ln 2.",
+            why="The photos say 1 and 4. The mean of ln 1 and ln 4 is ln 2.",
             because=r"$$\ln E = \frac",
         ),
         Question(
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.ones((2, 1, 1), np.uint8)\n"
             "merge(images, [1, 0.01], g, np.ones(256))[0, 0]",
-            why="The frames say 1 and 100. The mean of ln 1 and ln 100 is ln 10.",
+            why="The photos say 1 and 100. The mean of ln 1 and ln 100 is ln 10.",
             because=r"$$\ln E = \frac",
         ),
     ),
@@ -57,8 +57,8 @@ def mean_of_radiance(images, times, g, w=None):
 
 @mistake(
     "merge_by_the_number_of_frames",
-    says="You divide by the number of frames. Divide by the sum of the weights; otherwise a pixel"
-    " that only one frame measures is wrong.",
+    says="You divide by the number of photos. Divide by the sum of the weights; otherwise a pixel"
+    " that only one photo measures is wrong.",
 )
 def by_the_number_of_frames(images, times, g, w=None):
     images = np.asarray(images)
@@ -129,7 +129,7 @@ def green_curve_for_all(images, times, g, w=None):
             "images = np.array([[[100]]], np.uint8)\n"
             "merge(images, [1], g)[0, 0]",
             why="Here g is the logarithm of the pixel value, as in a linear camera. One "
-            "frame of 1 s: ln E = ln 100 - ln 1.",
+            "photo of 1 s: ln E = ln 100 - ln 1.",
             because=r"$\ln E = g(Z_j)",
         ),
         Question(
@@ -189,8 +189,8 @@ def power_of_two(images, times, g, w=None):
 
 @mistake(
     "merge_times_forgotten",
-    says="exp(g) is the exposure, irradiance times time. Divide by each frame's time; "
-    "otherwise frames of one scene disagree.",
+    says="exp(g) is the exposure, irradiance times time. Divide by each photo's time; "
+    "otherwise photos of one scene disagree.",
 )
 def times_forgotten(images, times, g, w=None):
     images = np.asarray(images)
@@ -211,7 +211,7 @@ def times_forgotten(images, times, g, w=None):
 
 @mistake(
     "merge_not_weighted",
-    says="All frames count the same in your mean, so noisy dark values and nearly clipped values "
+    says="All photos count the same in your mean, so noisy dark values and nearly clipped values "
     "have full weight.",
     misses_method=True,
 )
@@ -234,22 +234,22 @@ def not_weighted(images, times, g, w=None):
 
 @mistake(
     "merge_clipped_levels_count",
-    says="Your hat is not 0 at pixel values 0 and 255, so clipped pixels count. Do not add anything "
-    "to the hat.",
+    says="Your hat is not 0 at pixel values 0 and 255, so clipped pixels count. Use "
+    "min(z, 255 - z), which is 0 at both ends.",
     questions=(
         Question(
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.array([[[50]], [[200]]], np.uint8)\n"
             "merge(images, [1, 4], g)[0, 0]",
             why="Here g is the logarithm of the pixel value, as in a linear camera. Both "
-            "frames say 50 / 1 = 200 / 4 = 50.",
+            "photos say 50 / 1 = 200 / 4 = 50.",
             because=r"$$\ln E = \frac",
         ),
         Question(
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.array([[[2]], [[255]]], np.uint8)\n"
             "merge(images, [1, 200], g)[0, 0]",
-            why="The value 255 is clipped and has the weight 0. Only the first frame "
+            why="The value 255 is clipped and has the weight 0. Only the first photo "
             "counts: 2 / 1.",
             because="If it is not given, use the hat",
         ),
@@ -257,7 +257,7 @@ def not_weighted(images, times, g, w=None):
             code="g = np.log(np.maximum(np.arange(256), 1))\n"
             "images = np.array([[[0]], [[4]]], np.uint8)\n"
             "merge(images, [1, 8], g)[0, 0]",
-            why="The value 0 has the weight 0, too. Only the second frame counts: 4 / 8.",
+            why="The value 0 has the weight 0, too. Only the second photo counts: 4 / 8.",
             because="If it is not given, use the hat",
         ),
     ),

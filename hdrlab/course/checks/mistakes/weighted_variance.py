@@ -8,7 +8,7 @@ from hdrlab.course.checks.mistakes import mistake
 @mistake(
     "weighted_variance_plain_mean",
     says="You subtract the plain mean of x. Subtract the weighted mean, sum w x / sum w, so "
-    "that a clipped frame does not shift it.",
+    "that a clipped photo does not shift it.",
 )
 def plain_mean(x, w):
     total = np.maximum(w.sum(axis=0), 1e-30)

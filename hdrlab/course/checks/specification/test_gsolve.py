@@ -82,7 +82,7 @@ def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
 
 @points(4)
 def test_the_curve_of_a_camera_is_recovered(subject, rng):
-    """Every sample in every frame gives one row: w (g(Z) - lE) = w B.
+    """Each sample gives one row for each photo: w (g(Z) - lE) = w B.
 
     Column Z[i, j] holds w, column n + i holds -w, and the right-hand side is w B[j]. B is a natural
     logarithm.
