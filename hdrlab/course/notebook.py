@@ -33,7 +33,7 @@ if in_process.IS_BROWSER:
     )
 # what messages call the code that `check_text` is given
 TEXT_NAME = "Your text"
-ABOUT_TUTOR = "They lead from a small input to the mistake. They cost no points."
+ABOUT_TUTOR = "The questions lead from a small input to the mistake. They cost no points."
 
 # the latest result of each task in this kernel, for the bar of the homework
 _latest: dict[str, results.Result] = {}
