@@ -90,6 +90,8 @@ class Evidence:
         Fraction of the image that moved.
     bands : float
         Stops by which the light changes in bands.
+    unresolved_fraction : float
+        Fraction of the image that seemed to move, but in which no region has ghosts.
     """
 
     tint: float = 0.0
@@ -101,6 +103,13 @@ class Evidence:
     spread: float = 0.0
     fraction: float = 0.0
     bands: float = 0.0
+    unresolved_fraction: float = 0.0
+
+
+# `decide` does not use `unresolved_fraction`.
+DECISIVE_STATISTICS = tuple(
+    field.name for field in fields(Evidence) if field.name != "unresolved_fraction"
+)
 
 
 def collect_evidence(
@@ -109,6 +118,7 @@ def collect_evidence(
     *,
     fraction: float = 0.0,
     bands: float = 0.0,
+    unresolved_fraction: float = 0.0,
 ) -> Evidence:
     """Return the Evidence of a bracket and its map."""
     return Evidence(
@@ -121,6 +131,7 @@ def collect_evidence(
         spread=spread,
         fraction=fraction,
         bands=bands,
+        unresolved_fraction=unresolved_fraction,
     )
 
 
@@ -194,7 +205,7 @@ def find_causes(evidence: Evidence) -> tuple[Cause, ...]:
     """
     if not decide(evidence):
         return ()
-    known = [field.name for field in fields(evidence) if getattr(evidence, field.name) > 0]
+    known = [name for name in DECISIVE_STATISTICS if getattr(evidence, name) > 0]
     causes: set[Cause] = set()
     for factors in product((1 / MARGIN, MARGIN), repeat=len(known)):
         changes = {
@@ -203,6 +214,9 @@ def find_causes(evidence: Evidence) -> tuple[Cause, ...]:
         }
         causes |= decide(replace(evidence, **changes))
     causes |= decide(evidence)
+    # With slightly different ghosts, hdrlab would find a region that moved, and blame motion alone.
+    if evidence.unresolved_fraction > 0 and "flicker" in causes:
+        causes.add("moved")
     return tuple(cause for cause in CAUSES if cause in causes)
 
 
@@ -218,6 +232,7 @@ def warn_of_contradictions(
     *,
     band_stops: float = 0.0,
     moving_fraction: float = 0.0,
+    unresolved_fraction: float = 0.0,
     times: TimesSource = "kept",
     deviations: Sequence[float] = (),
 ) -> str:
@@ -234,13 +249,21 @@ def warn_of_contradictions(
         Stops by which the light changes in horizontal bands, see `motion.measure_motion`.
     moving_fraction : float
         Fraction of the image in which ghosts are left.
+    unresolved_fraction : float
+        Fraction of the image that seemed to move, but in which no region has ghosts.
     times : {"kept", "corrected", "relative"}
         Whether the times stayed as stated, whether hdrlab tried to correct them from the pixels, or
         whether they are relative. The advice depends on it.
     deviations : (P,) float, optional
         Stops by which each photo deviates from the map, see `consistency.measure_deviations`.
     """
-    evidence = collect_evidence(found, spread, fraction=moving_fraction, bands=band_stops)
+    evidence = collect_evidence(
+        found,
+        spread,
+        fraction=moving_fraction,
+        bands=band_stops,
+        unresolved_fraction=unresolved_fraction,
+    )
     causes = find_causes(evidence)
     if not causes:
         return ""
@@ -282,7 +305,10 @@ def _describe_causes(
         "dark": names[pair],
         "bright": names[min(pair + 1, len(names) - 1)],
         "off": _list_wrong_times(found, names),
-        "percent": f"{100 * evidence.fraction:.0f}",
+        "percent": f"{100 * max(evidence.fraction, evidence.unresolved_fraction):.0f}",
+        "ghosts_advice": warning_text(
+            "unresolved_ghosts_advice" if evidence.unresolved_fraction > 0 else "ghosts_advice"
+        ),
         "spread": f"{evidence.spread:.2f}",
         "deviations": ", ".join(deviating) or "no photo stands out",
     }

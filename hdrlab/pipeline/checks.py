@@ -45,6 +45,7 @@ def check_map(
     part_errors: Sequence[PartError] = (),
     *,
     options: Options,
+    unresolved_fraction: float = 0.0,
 ) -> Assembly:
     """Return the Assembly with `medians`, and with warnings and notes from what the checks found.
 
@@ -64,6 +65,8 @@ def check_map(
         Errors in parts of the image, see `diagnostics.tones.measure_part_errors`.
     options : Options
         How the map was made. No warning recommends an option that was used.
+    unresolved_fraction : float
+        Fraction of the image that seemed to move, but in which no region has ghosts.
     """
     state = replace(state, stage="compare", medians=medians)
     spread = state.spread
@@ -76,7 +79,9 @@ def check_map(
     dark_text = "" if state.fallback else tones.warn_of_dark_parts(part_errors, merge=options.merge)
     if dark_text:
         state = state.with_warning(dark_text)
-    text = _describe_problem(state, found, moving_fraction, band_stops, options)
+    text = _describe_problem(
+        state, found, moving_fraction, band_stops, options, unresolved_fraction=unresolved_fraction
+    )
     if text:
         return state.with_warning(text)
     names = state.bracket.names
@@ -117,6 +122,8 @@ def _describe_problem(
     moving_fraction: float,
     band_stops: float,
     options: Options,
+    *,
+    unresolved_fraction: float,
 ) -> str:
     """Return the warning about the most likely cause of contradictions, or ""."""
     times: TimesSource = "kept" if options.times == "stated" else "corrected"
@@ -128,6 +135,7 @@ def _describe_problem(
         state.spread,
         band_stops=band_stops,
         moving_fraction=moving_fraction,
+        unresolved_fraction=unresolved_fraction,
         times=times,
         deviations=consistency.measure_deviations(state.medians).tolist(),
     )

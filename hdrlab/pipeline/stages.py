@@ -474,10 +474,12 @@ def _check_map(
     moving = None if state.moving is None else state.moving[measurements.grid]
     part_errors = tones.measure_part_errors(measurements.block_errors, moving=moving)
     measured_motion = measurements.motion
+    unresolved_fraction = 0.0
     if state.moving is not None or is_misaligned:
         measured_motion = motion.Motion(fraction=0.0, band_stops=0.0)
     elif removes_ghosts:
-        # The photos contradict each other, but nothing moved.
+        # The photos contradict each other, but no region of them has ghosts.
+        unresolved_fraction = measured_motion.fraction
         measured_motion = measured_motion._replace(fraction=0.0)
     return checks.check_map(
         state,
@@ -487,6 +489,7 @@ def _check_map(
         measured_motion.band_stops,
         part_errors,
         options=options,
+        unresolved_fraction=unresolved_fraction,
     )
 
 

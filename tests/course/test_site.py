@@ -637,6 +637,8 @@ UNEXPLAINED = {
     "instead",
     "dark_parts_advice",
     "widespread_advice",
+    "ghosts_advice",
+    "unresolved_ghosts_advice",
 }
 
 

@@ -141,6 +141,19 @@ def test_moving_things_and_flickering_lamps_are_told_apart_or_named_together():
     assert not causes.is_moving(0.02, 0.054)
 
 
+def test_whether_a_region_with_ghosts_is_found_does_not_change_a_verdict_into_its_opposite():
+    """If hdrlab removes ghosts, it says that something moved, and ignores bands."""
+    rng = np.random.default_rng(6)
+    flickering_count = 0
+    for _ in range(300):
+        evidence = replace(draw(rng), fraction=0.0)
+        with_ghosts = {"moved", *find_causes(replace(evidence, bands=0.0))}
+        without_ghosts = set(find_causes(replace(evidence, unresolved_fraction=0.05)))
+        assert not without_ghosts or with_ghosts & without_ghosts
+        flickering_count += "flicker" in without_ghosts
+    assert flickering_count > 10
+
+
 def test_photos_that_are_about_as_likely_to_have_the_wrong_time_are_named_too():
     images = np.random.default_rng(0).integers(20, 200, (4, 60, 90), np.uint8)
     assert find_contradictions(images, [1, 2, 4, 8]).other_stops.size in (0, 4)
