@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.verdicts import bands, borders, claims, machines
+from benchmarks.verdicts import bands, borders, brackets, claims, machines
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.diagnostics.warning_texts import SENTENCES
@@ -72,11 +72,17 @@ def test_on_both_sides_of_the_border_of_a_white_balance_no_verdict_is_the_opposi
     assert sum(result.opposites for result in results) == 0
 
 
-def test_noise_of_a_millionth_changes_the_light_by_a_millionth():
-    ill = borders.add_noise(borders.state_wrong_time(1.1), 0)
-    E = np.ones((40, 60, 3), np.float32)
-    changed = ill.light(None, 0, np.random.default_rng(0), E)
-    assert 0 < np.abs(changed - 1).max() < 1e-5
+def test_light_that_differs_by_a_millionth_changes_few_pixel_values_by_one_level(tmp_path):
+    plan = brackets.plan(tmp_path, 3)
+    ill = borders.state_wrong_time(1.0)
+    changed = borders.add_noise(ill, 0)
+    Z = np.random.default_rng(0).integers(0, 256, (400, 600, 3), np.uint8)
+    expected = ill.levels(plan, 0, np.random.default_rng(0), Z)
+    found = changed.levels(plan, 0, np.random.default_rng(0), Z)
+    differences = np.abs(found.astype(int) - expected)
+    assert differences.max() == 1
+    assert 0 < np.mean(differences > 0) < 300e-6
+    assert changed.light is ill.light
 
 
 @pytest.mark.papers

@@ -4,6 +4,10 @@ A series makes brackets that differ in one number, the strength of an ill. Where
 two strengths differ, bisection finds two neighboring strengths whose verdicts differ. There, the
 photos are taken again with light that differs by a millionth from pixel to pixel, and each verdict
 is compared with the others: `claims.contradict`.
+
+The millionth changes the pixel values, and not the light that the simulated camera receives: the
+number of random values that NumPy draws for a Poisson distribution depends on its mean, so the
+slightest change of the light would give all following pixels other noise.
 """
 
 from collections.abc import Callable, Mapping
@@ -24,6 +28,8 @@ from hdrlab.errors import InputError
 
 # relative noise of the light
 NOISE = 1e-6
+# Such noise moves a pixel value of 8 bits across a border of rounding with at most this probability.
+CHANGED_FRACTION = 255 * NOISE
 # steps of the bisection between two strengths, and repetitions on each side of the border
 BISECTIONS = 7
 REPETITIONS = 3
@@ -149,13 +155,15 @@ def judge(series: Series, strength: float, folder: Path, noise_seed: int | None)
 
 
 def add_noise(ill: Ill, seed: int) -> Ill:
-    """Return an ill with light that differs by a millionth from pixel to pixel."""
+    """Return an ill with photos that differ as if the light differed by a millionth."""
 
-    def light(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
-        noise = np.random.default_rng((seed, j)).standard_normal(E.shape)
-        return np.asarray(ill.light(plan, j, rng, E) * (1 + NOISE * noise), np.float32)
+    def levels(plan: Plan, j: int, rng: Draw, Z: Array) -> Array:
+        noise = np.random.default_rng((seed, j))
+        is_changed = noise.random(Z.shape) < CHANGED_FRACTION
+        changed = Z + is_changed * noise.choice([-1, 1], Z.shape)
+        return ill.levels(plan, j, rng, np.clip(changed, 0, 255).astype(np.uint8))
 
-    return ill._replace(light=light)
+    return ill._replace(levels=levels)
 
 
 @dataclass(frozen=True, kw_only=True)
