@@ -203,8 +203,20 @@ def find_causes(evidence: Evidence) -> tuple[Cause, ...]:
     >>> find_causes(Evidence(spread=0.1))
     ()
     """
+    causes = _find_within_margin(evidence)
+    # If something may have moved, the same photos with slightly other numbers may be blamed on motion
+    # alone: hdrlab removes ghosts then, and ignores bands.
+    motion = _find_within_margin(Evidence(fraction=evidence.fraction, bands=evidence.bands))
+    may_have_moved = evidence.unresolved_fraction > 0 or "moved" in motion
+    if "flicker" in causes and may_have_moved:
+        causes.add("moved")
+    return tuple(cause for cause in CAUSES if cause in causes)
+
+
+def _find_within_margin(evidence: Evidence) -> set[Cause]:
+    """Return what `decide` returns for all statistics within MARGIN of these."""
     if not decide(evidence):
-        return ()
+        return set()
     known = [name for name in DECISIVE_STATISTICS if getattr(evidence, name) > 0]
     causes: set[Cause] = set()
     for factors in product((1 / MARGIN, MARGIN), repeat=len(known)):
@@ -213,11 +225,7 @@ def find_causes(evidence: Evidence) -> tuple[Cause, ...]:
             for name, factor in zip(known, factors, strict=True)
         }
         causes |= decide(replace(evidence, **changes))
-    causes |= decide(evidence)
-    # With slightly different ghosts, hdrlab would find a region that moved, and blame motion alone.
-    if evidence.unresolved_fraction > 0 and "flicker" in causes:
-        causes.add("moved")
-    return tuple(cause for cause in CAUSES if cause in causes)
+    return causes | decide(evidence)
 
 
 def is_moving(fraction: float, bands: float) -> bool:

@@ -8,7 +8,8 @@ import pytest
 from hdrlab.diagnostics import causes
 from hdrlab.diagnostics.causes import CAUSES, Evidence, find_causes
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions
-from hdrlab.diagnostics.warning_texts import SENTENCES, warning_text
+from hdrlab.diagnostics.motion import MAX_FLICKER_FRACTION
+from hdrlab.diagnostics.warning_texts import MARGIN, SENTENCES, warning_text
 
 STATISTICS = tuple(field.name for field in fields(Evidence))
 # on both sides of every limit of `causes.decide`
@@ -150,6 +151,22 @@ def test_whether_a_region_with_ghosts_is_found_does_not_change_a_verdict_into_it
         with_ghosts = {"moved", *find_causes(replace(evidence, bands=0.0))}
         without_ghosts = set(find_causes(replace(evidence, unresolved_fraction=0.05)))
         assert not without_ghosts or with_ghosts & without_ghosts
+        flickering_count += "flicker" in without_ghosts
+    assert flickering_count > 10
+
+
+def test_whether_ghosts_are_removed_does_not_change_a_verdict_into_its_opposite():
+    """Close to the limit of clear motion, bands are ignored on one side, and not on the other."""
+    rng = np.random.default_rng(7)
+    limit = MAX_FLICKER_FRACTION * MARGIN
+    flickering_count = 0
+    for _ in range(300):
+        evidence = replace(draw(rng), bands=0.2)
+        assert causes.is_moving(1.001 * limit, evidence.bands)
+        assert not causes.is_moving(limit / 1.001, evidence.bands)
+        with_ghosts = {"moved", *find_causes(replace(evidence, fraction=0.0, bands=0.0))}
+        without_ghosts = set(find_causes(replace(evidence, fraction=limit / 1.001)))
+        assert with_ghosts & without_ghosts
         flickering_count += "flicker" in without_ghosts
     assert flickering_count > 10
 
