@@ -6,8 +6,6 @@ due.toml            what each answer must get: full marks or not, and the known 
 An answer with several faults may have one mistake named or all of them. A name that is not in
 `due.toml` is wrong. An empty list says that no known mistake describes the fault, so no name is due.
 `python -m benchmarks corpus` grades every answer as `fairness` does, for SEEDS students.
-
-The row "counterexamples" measures the counterexamples of failed checks; see counterexamples.py.
 """
 
 import tomllib
@@ -15,13 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.corpus import counterexamples
 from benchmarks.experiments import Experiment, Hold, at_least, at_most
-from benchmarks.fairness import SEEDS, Score, mistakes, scores, texts
+from benchmarks.fairness import SEEDS, Score, scores
 
 HERE = Path(__file__).parent
 MIN_NAMED_PERCENT = 60
-MIN_SHOWN_PERCENT = 70
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,20 +73,6 @@ def named(_: Path) -> dict[str, Any]:
     }
 
 
-def smallest(_: Path) -> dict[str, Any]:
-    """Return how small the counterexamples of all wrong answers are, and what they cost."""
-    wrong = answers()
-    for (task, name), expected in due().items():
-        if expected.full_marks:
-            del wrong[task][name]
-    losses = [
-        loss
-        for group in (mistakes(), texts("wrong"), wrong)
-        for loss in counterexamples.found(group)
-    ]
-    return counterexamples.figures(losses)
-
-
 NONE_REFUSED: Hold = at_most("right answers refused", 0)
 ROWS = (
     Experiment(
@@ -101,17 +83,6 @@ ROWS = (
             NONE_REFUSED,
             at_most("answers named wrongly", 0),
             at_least("losses named, %", MIN_NAMED_PERCENT),
-        ),
-    ),
-    Experiment(
-        "counterexamples",
-        "the smallest counterexamples of all wrong answers",
-        smallest,
-        (
-            at_least("with a counterexample, %", MIN_SHOWN_PERCENT),
-            at_most("numbers, median", 9),
-            at_most("CPU s of a failed check, median and most", 0.5, 5),
-            at_most("contradicted by a right answer", 0),
         ),
     ),
 )

@@ -53,6 +53,10 @@ class SearchEnded(Exception):
     """Raised inside the search if it may make no further calls."""
 
 
+class NoCounterexample(Exception):
+    """Raised if the search finds no counterexample; the message says why."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Counterexample:
     """An input, the student's answer and the right one, as text.
@@ -195,8 +199,8 @@ def find(
     solution: Callable[..., Any],
     *,
     raised: bool = False,
-) -> Counterexample | None:
-    """Return the smallest counterexample to a student's function that the search finds, or None.
+) -> Counterexample:
+    """Return the smallest counterexample to a student's function that the search finds.
 
     Parameters
     ----------
@@ -211,13 +215,19 @@ def find(
         The right function.
     raised : bool
         Whether the check failed because the function raised an exception.
+
+    Raises
+    ------
+    NoCounterexample
+        If the search finds none.
     """
     if getattr(module, "check_one_input", True) is None:
-        return None
+        raise NoCounterexample("the file of checks has check_one_input = None")
     search = Search(task, module, subject, solution, raised=raised)
     subject.fresh()
     starts = _start_inputs(task, module, run, solution)
     smallest = None
+    reason = "the function answers no public input of the check wrongly"
     try:
         for args, kwargs in starts:
             smallest = search.try_input(args, kwargs)
@@ -227,9 +237,9 @@ def find(
             for smaller in _shrink(search, smallest):
                 smallest = smaller
     except SearchEnded:
-        pass
+        reason = "the search ended before the function answered an input wrongly"
     if smallest is None:
-        return None
+        raise NoCounterexample(reason)
     return _confirmed(task, module, subject, solution, smallest, raised=raised)
 
 
@@ -281,19 +291,19 @@ def _confirmed(
     smallest: Trial,
     *,
     raised: bool,
-) -> Counterexample | None:
-    """Return a counterexample if its code, in a process of its own, gives the same wrong answer."""
+) -> Counterexample:
+    """Return the counterexample whose code, in a process of its own, gives the same wrong answer."""
     snippet = snippets.write(task, solution, smallest.args, smallest.kwargs)
     if snippet.count > MAX_NUMBERS:
-        return None
+        raise NoCounterexample(f"the smallest input has {snippet.count} numbers")
     search = Search(task, module, subject, solution, raised=raised)
     subject.fresh()
     try:
         trial = search.try_input(*snippet.arguments())
     except SearchEnded:
-        return None
+        raise NoCounterexample("the code of the input gives no answer in a new process") from None
     if trial is None or snippets.show(trial.answer) != snippets.show(smallest.answer):
-        return None
+        raise NoCounterexample("the code of the input gives another answer in a new process")
     call = snippet.call
     if trial.failure:
         return Counterexample(

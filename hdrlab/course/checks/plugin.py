@@ -249,7 +249,7 @@ class GradingPlugin:
         task_id = task_of(item)
         if task_id in self.late or task_id not in functions:
             return
-        found = counterexamples.find(
+        example = counterexamples.find(
             task_id,
             item.module,
             partial(_run_check, item),
@@ -257,8 +257,7 @@ class GradingPlugin:
             functions[task_id],
             raised=raised,
         )
-        if found is not None:
-            self._write(counterexample=_id(item), **asdict(found))
+        self._write(counterexample=_id(item), **asdict(example))
 
     def pytest_unconfigure(self) -> None:
         """Close the sandbox."""

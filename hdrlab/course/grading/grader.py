@@ -11,7 +11,7 @@ import json
 import os
 import platform
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from importlib import metadata
@@ -274,7 +274,7 @@ def _checks(events: Sequence[Event], homework: Homework) -> Iterator[Check]:
             cases.setdefault((event["task"], event["name"], event["hidden"]), []).append(event)
     ends = _ends(events)
     examples = {
-        event["counterexample"]: _counterexample(event)
+        event["counterexample"]: shown_counterexample(event)
         for event in events
         if "counterexample" in event
     }
@@ -325,7 +325,7 @@ def _ends(events: Sequence[Event]) -> dict[str, Event]:
     return ends
 
 
-def _counterexample(event: Event) -> Counterexample:
+def shown_counterexample(event: Mapping[str, Any]) -> Counterexample:
     """Return the counterexample of an event, with text that a page can show."""
     return Counterexample(
         code=sanitize_text("\n".join([*event["inputs"], event["call"]]), MAX_MESSAGE_LENGTH),
