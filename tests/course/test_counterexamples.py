@@ -18,6 +18,7 @@ from hdrlab.course.grading.results import Check, Counterexample, Result
 from hdrlab.course.plan import GradingOptions
 from hdrlab.course.reports import feedback
 from hdrlab.course.sandbox import in_process, tiers
+from hdrlab.course.source_code.names import imported_numpy_modules
 from hdrlab.course.submissions.reader import SubmittedCode
 
 PLAN = plan.read()
@@ -32,13 +33,14 @@ MISTAKES = {
     "exclusion_bytes_wrap": "test_bytes_do_not_wrap_around",
     "log_average_linear": "test_it_is_the_geometric_mean",
 }
+SNR_CHECK = "test_the_weight_is_the_signal_over_its_slope"
 KNOWN = {mistake.name: mistake for mistake in misconceptions.known()}
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 
 def subject_of(task, text):
     """Return a Subject of one function, which runs in this process."""
-    modules = ("numpy",)
+    modules = tuple(imported_numpy_modules([text]))
     return Subject({task: text}, tiers.choose(in_process.TIER), 10.0, modules)
 
 
@@ -130,6 +132,23 @@ def test_a_right_answer_never_gets_a_counterexample(task):
     for path in sorted((FAIRNESS / "right" / task).glob("*.py")):
         for check in checks:
             assert find(task, path.read_text("utf8"), check) is None, path.name
+
+
+TASKS = [task.id for homework in PLAN.homeworks.values() for task in homework.tasks]
+TASKS_WITH_SMALL_INPUTS = [task for task in TASKS if hasattr(module_of(task), "SMALL_INPUTS")]
+
+
+@pytest.mark.parametrize("task", TASKS_WITH_SMALL_INPUTS)
+def test_right_answers_agree_on_all_small_inputs_of_a_task(task):
+    if not FAIRNESS.is_dir():
+        pytest.skip("benchmarks/ is no part of the installed package")
+    module = module_of(task)
+    solution = plan.function(PLAN.task(task))
+    for path in sorted((FAIRNESS / "right" / task).glob("*.py")):
+        with subject_of(task, path.read_text("utf8")) as subject:
+            search = counterexamples.Search(task, module, subject, solution, raised=False)
+            for args, kwargs in counterexamples.small_inputs(module):
+                assert search.try_input(args, kwargs) is None, (path.name, args, kwargs)
 
 
 def graded(task, text, options, name="hw1"):
@@ -268,6 +287,12 @@ def test_an_input_shrinks_to_the_one_value_that_matters():
     assert smallest[0].dtype == np.uint8 and smallest[1].shape == (1,)
 
 
+def test_small_inputs_may_end_with_keyword_arguments():
+    example = find("snr", source_of("snr_signal_alone"), SNR_CHECK)
+    assert example.call == "snr(g, least=0.01, span=1)"
+    assert pasted(example, function_in("snr", source_of("snr_signal_alone"))) == example.yours
+
+
 def test_an_argument_that_is_a_named_tuple_shrinks_and_is_pasted_as_a_tuple():
     text = source_of("distance_squared")
     example = find("distance", text, "test_the_distance_is_measured_in_standard_deviations")
@@ -282,6 +307,8 @@ def test_an_argument_that_is_a_named_tuple_shrinks_and_is_pasted_as_a_tuple():
         np.array([0.1, 1 / 3, np.nan, np.inf, 1e-30]),
         np.array([[0.1]], np.float32),
         np.linspace(0, 1, 256),
+        np.linspace(-3, 0.5, 256),
+        np.linspace(0, [1, 2, 4], 256),
         np.minimum(np.arange(256), 255 - np.arange(256)),
         np.full((4, 5), 7.5, np.float32),
         np.eye(4),

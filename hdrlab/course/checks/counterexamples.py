@@ -13,7 +13,8 @@ is_valid_input(...)            whether the function is defined for these argumen
 check_one_input(subject, ...)  compare the answer to these arguments as the checks do; without it, the
                                answer is compared with the solution's (see `differs`)
 SMALL_INPUTS                   list of argument tuples which are tried in place of the inputs of the
-                               checks, from small to large; for inputs with a structure, such as files
+                               checks, from small to large; for inputs with a structure, such as files.
+                               A dictionary at the end of a tuple holds keyword arguments
 check_one_input = None         no counterexamples: right answers may be too different
 """
 
@@ -248,8 +249,7 @@ def _start_inputs(
 ) -> Iterator[tuple[Sequence[Any], Mapping[str, Any]]]:
     """Yield the inputs with which the check calls the solution, small ones first."""
     if hasattr(module, "SMALL_INPUTS"):
-        for args in module.SMALL_INPUTS:
-            yield args, {}
+        yield from small_inputs(module)
         return
     for seed in PUBLIC_SEEDS:
         subject = inprocess.Subject({task: solution})
@@ -262,6 +262,15 @@ def _start_inputs(
         calls = sorted(subject.calls, key=lambda call: _count_numbers(call[:2]))
         for args, kwargs, _ in calls[:MAX_STARTS]:
             yield args, kwargs
+
+
+def small_inputs(module: ModuleType) -> Iterator[tuple[Sequence[Any], Mapping[str, Any]]]:
+    """Yield the arguments and the keyword arguments of each of the `SMALL_INPUTS` of a file of checks."""
+    for args in module.SMALL_INPUTS:
+        if isinstance(args[-1], dict):
+            yield args[:-1], args[-1]
+        else:
+            yield args, {}
 
 
 def _count_numbers(value: Any) -> int:

@@ -119,7 +119,7 @@ def _write_array(array: np.ndarray) -> str:
     if array.size > 4 and (array == array.flat[0]).all():
         shape = array.shape[0] if array.ndim == 1 else array.shape
         return f"np.full({shape}, {first}{suffix})"
-    if array.ndim == 1 and array.size > MAX_LISTED_VALUES:
+    if array.size > MAX_LISTED_VALUES:
         short = _write_table(array)
         if short:
             return short if not suffix else f"({short}).astype(np.{kind})"
@@ -127,14 +127,18 @@ def _write_array(array: np.ndarray) -> str:
 
 
 def _write_table(array: np.ndarray) -> str:
-    """Return a long table as a short expression, or ""."""
+    """Return a long table (n,) or (n, channels) as a short expression, or ""."""
     n = len(array)
-    texts = [f"np.arange({n})", f"np.minimum(np.arange({n}), {n - 1} - np.arange({n}))"]
-    if array.dtype.kind == "f":
-        texts = [f"1.0 * {texts[0]}", f"np.linspace(0, 1, {n})", f"1.0 * {texts[1]}"]
-    for text, table in zip(texts, shrinking.simple_tables(array), strict=True):
-        if np.array_equal(table.astype(array.dtype), array):
-            return text
+    if array.ndim == 1:
+        texts = [f"np.arange({n})", f"np.minimum(np.arange({n}), {n - 1} - np.arange({n}))"]
+        if array.dtype.kind == "f":
+            texts = [f"1.0 * {texts[0]}", f"np.linspace(0, 1, {n})", f"1.0 * {texts[1]}"]
+        for text, table in zip(texts, shrinking.simple_tables(array), strict=True):
+            if np.array_equal(table.astype(array.dtype), array):
+                return text
+    line = np.linspace(array[0], array[-1], n)
+    if array.dtype == np.float64 and array.ndim <= 2 and np.array_equal(line, array):
+        return f"np.linspace({_write_rows(array[0])}, {_write_rows(array[-1])}, {n})"
     return ""
 
 

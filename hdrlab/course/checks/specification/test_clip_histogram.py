@@ -15,6 +15,13 @@ def draw_inputs(rng, bins=24):
     return h / h.sum()
 
 
+SMALL_INPUTS = [
+    (np.array([0.7, 0.2, 0.1]), {"limit": 1.5}),
+    (np.array([0.8, 0.2, 0.0]), {"limit": 1.0}),
+    (np.array([0.5, 0.25, 0.25]), {"limit": 1.2}),
+]
+
+
 @points(6)
 def test_the_excess_goes_where_there_is_room(subject, rng):
     """Two bins are above the limit. Where do their pixels go?

@@ -20,6 +20,12 @@ def draw_skin(rng):
     return skin.Skin(rng.uniform(-25, 25, 2), S)
 
 
+def is_valid_input(Z, gaussian):
+    """Return whether S is the covariance matrix of some colors."""
+    _, S = gaussian
+    return np.array_equal(S, S.T) and np.linalg.eigvalsh(S).min() > 0
+
+
 def same_distance(subject, Z, gaussian, what="d"):
     d = skin.distance(Z, gaussian)
     same(subject.distance(Z, gaussian), d, TOLERANCE * d.max(), what=what)

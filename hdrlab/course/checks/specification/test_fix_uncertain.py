@@ -19,8 +19,25 @@ def draw_inputs(rng):
     return (mean + 2 * lone).astype(np.float32), k.astype(np.float32)
 
 
-# near a border, where all pixels of a small image are, right blurs differ
-check_one_input = None
+def draw_pixel(value):
+    """Return an image of zeros with one other value in its middle, far from the borders."""
+    image = np.zeros((17, 17))
+    image[8, 8] = value
+    return image
+
+
+# near a border, right blurs differ
+SMALL_INPUTS = [
+    (draw_pixel(1.0), np.full((17, 17), k), {"sigma_s": sigma_s})
+    for sigma_s in (2.0, 6.0)
+    for k in (3.0, 0.5, 20.0)
+]
+
+
+def check_one_input(subject, mean, k, **options):
+    """Compare the base. Right blurs of one pixel differ by 0.0005."""
+    base = durand.fix_uncertain(mean, k, **options)
+    same(subject.fix_uncertain(mean, k, **options), base, 0.002, what="the base")
 
 
 @points(6)

@@ -36,8 +36,20 @@ def solution(*images, **options):
     return guided(*images, **options)
 
 
-# near a border, where all pixels of a small image are, right filters differ
-check_one_input = None
+def draw_pixel(value):
+    """Return an image of zeros with one other value in its middle, far from the borders."""
+    image = np.zeros((13, 13))
+    image[6, 6] = value
+    return image
+
+
+# near a border, right filters differ
+SMALL_INPUTS = [
+    (draw_pixel(1.0), {"radius": 1, "epsilon": 0.25}),
+    (draw_pixel(1.0), draw_pixel(2.0), {"radius": 1, "epsilon": 0.25}),
+    (draw_pixel(2.0), draw_pixel(1.0), {"radius": 1, "epsilon": 0.25}),
+    (draw_pixel(1.0), {"radius": 2, "epsilon": 0.25}),
+]
 
 
 @points(6)

@@ -21,9 +21,28 @@ def get_answer(subject, lL, **options):
     return finite(base, lL.shape, what="the base"), finite(detail, lL.shape, what="the detail")
 
 
-def is_valid_input(lL, **_):
-    """Return whether the image is uniform: in others of a few pixels, no pixel has similar neighbors."""
-    return lL.min() == lL.max()
+def draw_pixel(value):
+    """Return an image of zeros with one other value in its middle, far from the borders."""
+    image = np.zeros((9, 9), np.float32)
+    image[4, 4] = value
+    return image
+
+
+# near a border, right filters differ
+SMALL_INPUTS = [
+    (np.full((1, 1), 2, np.float32), {"sigma_s": 1.0, "sigma_r": 1.0}),
+    (draw_pixel(1.0), {"sigma_s": 1.0, "sigma_r": 1.0}),
+    (draw_pixel(1.0), {"sigma_s": 1.0, "sigma_r": 0.5}),
+    (draw_pixel(1.0), {"sigma_s": 0.5, "sigma_r": 1.0}),
+]
+
+
+def check_one_input(subject, lL, **options):
+    """Compare the layers. Right filters with windows of other sizes differ by 0.04."""
+    mean = bilateral(lL, **options).mean
+    base, detail = get_answer(subject, lL, **options)
+    same(base, mean, 0.05, what="the base")
+    same(detail, lL - mean, 0.05, what="the detail")
 
 
 @points(2)

@@ -66,10 +66,22 @@ def solution(images, times, g, w=None):
     return np.exp(np.sum(W * (curve - np.log(t)), axis=0) / np.sum(W, axis=0))
 
 
-def is_valid_input(images, exposures, g, w=None):
-    """Return whether every pixel is measured in some frame."""
-    table = weights.hat() if w is None else w
-    return bool((table[images].sum(axis=0) > 0).all())
+def draw_pixel(*levels):
+    """Return photos (P, 1, 1) or (P, 1, 1, 3) of one pixel."""
+    return np.array([[[level]] for level in levels], np.uint8)
+
+
+RAMP = np.linspace(0, 1, 256)
+# the times, or the exposures in stops, are 1 and 3
+SMALL_INPUTS = [
+    (draw_pixel(100), np.array([1.0]), RAMP),
+    (draw_pixel(50, 100), np.array([1.0, 3.0]), RAMP),
+    (draw_pixel(100, 200), np.array([1.0, 3.0]), RAMP),
+    (draw_pixel(0, 2), np.array([1.0, 3.0]), RAMP),
+    (draw_pixel(253, 255), np.array([1.0, 3.0]), RAMP),
+    (draw_pixel(50, 200), np.array([1.0, 3.0]), RAMP, RAMP),
+    (draw_pixel([50, 50, 50]), np.array([1.0]), np.linspace(0, [1.0, 2.0, 4.0], 256)),
+]
 
 
 def check_one_input(subject, images, exposures, g, w=None):

@@ -18,6 +18,11 @@ def draw_inputs(rng, count):
     return blends
 
 
+def is_valid_input(blends, degree):
+    """Return whether each blend has at least three different points."""
+    return all(min(len(np.unique(x)), len(np.unique(M))) >= 3 for x, M in blends)
+
+
 def same_form(subject, blends, degree, what="Q"):
     Q = quadratic_form(blends, degree)
     same(subject.quadratic_form(blends, degree), Q, 1e-4 * np.abs(Q).max(), what=what, picture=True)

@@ -20,6 +20,19 @@ def draw_inputs(rng, local=True):
     return L.astype(np.float32), Ld.astype(np.float32), int(rng.choice(BINS))
 
 
+# right answers name any luminance of a class, so those of a class are almost alike
+SMALL_INPUTS = [
+    (np.array([[1, 1.001, 4, 4.001]]), np.array([[0.1, 0.4, 0.7, 0.5]]), {"bins": 2}),
+    (np.array([[4, 4.001, 1, 1.001]]), np.array([[0.2, 0.5, 0.1, 0.4]]), {"bins": 2}),
+    (np.array([[1, 1.001, 1.002]]), np.array([[0.1, 0.2, 0.6]]), {"bins": 1}),
+    (
+        np.array([[1, 1.001, 2, 2.001, 90, 90.001]]),
+        np.array([[0.1, 0.2, 0.3, 0.4, 0.8, 0.9]]),
+        {"bins": 3},
+    ),
+]
+
+
 def get_answer(subject, L, Ld, bins):
     what = "luminance, minimum and maximum"
     return parts(subject.spread(L, Ld, bins=bins), 3, what=what)

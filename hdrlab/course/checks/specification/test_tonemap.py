@@ -37,8 +37,16 @@ def displayed(Lm, adaptation, white):
     return np.minimum(Lm * (1 + Lm / white**2) / (1 + adaptation), 1)
 
 
-# right operators may blur in different ways, which small images show most
-check_one_input = None
+# right operators may blur in different ways, so the pixels of the local ones are all alike
+SMALL_INPUTS = [
+    (np.array([[1.0]]), {"key": 0.5, "white": 2.0}),
+    (np.array([[1.0, 4.0]]), {"key": 0.5, "white": 2.0}),
+    (np.array([[1.0, 100.0]]), {"key": 0.5, "white": 2.0}),
+    (np.array([[1e-6, 4e-6]]), {"key": 0.5, "white": 2.0}),
+    (np.array([[1.0, 4.0]]),),
+    (np.array([[1.0, 400.0]]),),
+    (np.full((9, 9), 1.0), {"key": 0.5, "white": 2.0, "local": True}),
+]
 
 
 @points(14)
