@@ -97,6 +97,7 @@ ONLY_IN = {  # package -> rooms
     "jinja2": {"show", "course"},
     **dict.fromkeys(["dask", "distributed"], {"course"}),  # a class on many machines
     "filelock": {"course"},  # one run at a time in a folder
+    "cryptography": {"course"},  # signed receipts
     "copydetect": {"course"},  # what submissions have in common
     **dict.fromkeys(
         ["starlette", "uvicorn", "markupsafe", "markdown_it", "mdit_py_plugins"], {"course"}

@@ -47,6 +47,7 @@ COMMANDS = (
     grading.check,
     grading.doctor,
     grading.grade,
+    grading.receipt,
     grading.regrade,
     lessons.demo,
     lessons.lab,
@@ -85,7 +86,7 @@ SECTIONS = {
         "video",
     ),
     "Learn": ("demo", "lab", "check", "site"),
-    "Teach": ("course", "grade", "regrade", "viva", "doctor", "gallery"),
+    "Teach": ("course", "grade", "regrade", "receipt", "viva", "doctor", "gallery"),
     "Project": ("report", "submit"),
 }
 

@@ -11,6 +11,7 @@ from hdrlab.errors import InputError
 if TYPE_CHECKING:
     from hdrlab.course import plan as plans
     from hdrlab.course.grading.results import Result
+    from hdrlab.course.reports.receipts import SigningKey
 
 TIERS = ["strict", "container", "practice"]
 
@@ -72,6 +73,24 @@ def echo_secret_note(note: str) -> None:
     """Print the note of `read_secret` on standard error, if there is one."""
     if note:
         common.echo_notes([note])
+
+
+def read_receipt_key(file: Path | None) -> "SigningKey | None":
+    """Return the key that signs receipts, or None without a file; note it if the key is new."""
+    if file is None:
+        return None
+    common.require_modules("class", ["cryptography"])
+    from hdrlab.course.reports import receipts
+
+    key, is_new = receipts.read_private_key(file)
+    if is_new:
+        common.echo_notes(
+            [
+                f"{file}: created a key that signs receipts; do not lose or share this file, and "
+                f"publish {receipts.public_key_path(file)}"
+            ]
+        )
+    return key
 
 
 def grade_submission(

@@ -1,7 +1,7 @@
 """Grade all submissions of a class: the work of `hdrlab grade FOLDER` and `hdrlab regrade`."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,11 +16,14 @@ if TYPE_CHECKING:
     from hdrlab.course import plan as plans
     from hdrlab.course.classroom.jobs import Executor, GradingJob, JobResult
     from hdrlab.course.classroom.run import GradingContext
+    from hdrlab.course.grading.results import Result
+    from hdrlab.course.reports.receipts import SigningKey
     from hdrlab.course.students.anonymity import Anonymity
     from hdrlab.course.submissions.class_folder import SubmissionScan
 
 # in a class's results: the folder of the submissions and the ClassOptions, for `hdrlab regrade`
 OPTIONS_FILE = "asked.json"
+RECEIPTS_FILE = "receipts.txt"
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class ClassOptions:
     moodle : the assignment's grading worksheet
     adjustments : the instructor's decisions about students, CSV files
     explain_hidden : whether feedback says why hidden checks failed
+    receipt_key : the private key that signs receipts, or None for no receipts
     plan : the course plan, or None for the package's
     """
 
@@ -56,6 +60,7 @@ class ClassOptions:
     file_times: bool = False
     adjustments: tuple[Path, ...] = ()
     explain_hidden: bool = False
+    receipt_key: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,7 @@ class GradedClass:
     Attributes
     ----------
     anonymity : codes of the class, if the readers must not see names
+    receipt_key : signs a receipt for each result; None for no receipts
     """
 
     course: "GradingContext"
@@ -102,10 +108,22 @@ class GradedClass:
     options: ClassOptions
     run: RunOptions
     anonymity: "Anonymity | None" = None
+    receipt_key: "SigningKey | None" = None
 
     def shown(self, text: str) -> str:
         """Return a text as its readers may see it."""
         return text if self.anonymity is None else self.anonymity.redact(text)
+
+    def receipt_signer(self) -> "Callable[[Result], str] | None":
+        """Return the function that signs the receipt for a result; None if there are no receipts."""
+        key = self.receipt_key
+        if key is None:
+            return None
+        from hdrlab.course.reports import receipts
+
+        return lambda result: receipts.sign(
+            result, self.scan.submissions[result.student].students, key
+        )
 
 
 def load_class(
@@ -156,8 +174,15 @@ def load_class(
         teams_by_number=teams_by_number,
     )
     jobs = run.make_jobs(scan.submissions, homework, conditions)
-    anonymity_of_class = codes if run_options.anonymous else None
-    return GradedClass(course, scan, jobs, options, run_options, anonymity_of_class)
+    return GradedClass(
+        course=course,
+        scan=scan,
+        jobs=jobs,
+        options=options,
+        run=run_options,
+        anonymity=codes if run_options.anonymous else None,
+        receipt_key=assignments.read_receipt_key(options.receipt_key),
+    )
 
 
 def _require_due_date_passed(homework: "plans.Homework") -> None:
@@ -245,11 +270,26 @@ def write_books(graded_class: GradedClass, failures: Sequence[str] = ()) -> tupl
         )
         return page, len(statistics.points)
     *_, page = overview.write_class_files(out, course, graded_class.scan, statistics, failures)
+    _write_receipts(graded_class)
     if worksheet:
         rows = overview.gradebook_rows(course, graded_class.scan, statistics)
         notes = moodle.write(out, worksheet, rows, course.roster, course.homework)
         common.echo_notes(notes)
     return page, len(statistics.points)
+
+
+def _write_receipts(graded_class: GradedClass) -> None:
+    """Write receipts.txt, a line for each result; delete an earlier one if there are no receipts."""
+    from hdrlab.course.classroom import jobs as grading_jobs, run
+
+    path = graded_class.run.out / RECEIPTS_FILE
+    sign = graded_class.receipt_signer()
+    if sign is None:
+        path.unlink(missing_ok=True)
+        return
+    results = run.read_results(graded_class.run.out, graded_class.jobs)
+    text = "".join(f"{sign(result)}\n" for result in results)
+    grading_jobs.write_private_file(path, text.encode())
 
 
 def run_jobs(
@@ -268,11 +308,17 @@ def run_jobs(
     else:
         finished, remaining = grading_jobs.split_finished(folder, jobs)
 
+    sign = graded_class.receipt_signer()
+
     def write_feedback(result: "JobResult") -> "JobResult":
         if graded_class.anonymity is not None:  # `write_books` writes it, in the order of the codes
             return result
-        explain_hidden = graded_class.options.explain_hidden
-        return run.write_feedback(out, result, explain_hidden=explain_hidden)
+        return run.write_feedback(
+            out,
+            result,
+            explain_hidden=graded_class.options.explain_hidden,
+            sign=sign,
+        )
 
     results = [write_feedback(result) for result in finished]
     if finished:
@@ -341,6 +387,8 @@ def load_graded_class(results: Path, run_options: RunOptions, homework: str | No
     if options.secret_file:
         # unlike `grade`, never create a secret: all inputs would change
         secret, _is_new = plans.read_secret(options.secret_file.resolve(strict=True))
+    if options.receipt_key:  # nor a key, whose public key nobody has
+        options = replace(options, receipt_key=options.receipt_key.resolve(strict=True))
     conditions = plans.GradingOptions(
         tier=options.tier, secret=secret, hidden=options.hidden, timeout=options.timeout
     )
@@ -380,6 +428,7 @@ def _read_options(results: Path) -> ClassOptions:
             file_times=values.get("file_times", True),
             adjustments=tuple(Path(path) for path in values.get("adjustments") or ()),
             explain_hidden=values.get("explain_hidden", False),
+            receipt_key=_path_or_none(values.get("receipt_key")),
         )
     except (ValueError, TypeError, KeyError) as error:
         raise FileFormatError(

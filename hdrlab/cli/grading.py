@@ -1,5 +1,6 @@
-"""The commands about assignments: `check`, `grade`, `regrade` and `doctor`."""
+"""The commands about assignments: `check`, `grade`, `regrade`, `receipt` and `doctor`."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from hdrlab.errors import InputError
 if TYPE_CHECKING:
     from hdrlab.course.grading.results import Result
     from hdrlab.course.plan import GradingOptions
+    from hdrlab.course.reports.receipts import SigningKey
 
 jobs_option = click.option(
     "--jobs",
@@ -134,6 +136,12 @@ def check(
     help="Say in the feedback why hidden checks failed. Only after the due date.",
 )
 @click.option(
+    "--receipt-key",
+    type=common.INPUT_PATH,
+    help="File with your private key, which signs a receipt for each result. If it does not "
+    "exist, hdrlab creates it, and the public key beside it. Requires --secret-file.",
+)
+@click.option(
     "--anonymous",
     is_flag=True,
     help="Write pages and tables with codes instead of names. Requires --secret-file.",
@@ -175,6 +183,7 @@ def grade(
     moodle: Path | None,
     adjustments: tuple[Path, ...],
     explain_hidden: bool,
+    receipt_key: Path | None,
     anonymous: bool,
     only: tuple[str, ...],
     since: datetime | None,
@@ -198,6 +207,9 @@ def grade(
     the rest. The options from --roster to --cluster apply only to a folder, which requires
     --roster.
 
+    With --receipt-key, the feedback contains a signed receipt for the points. `hdrlab receipt`
+    verifies it.
+
     With --anonymous, hdrlab writes the folder anonymous, in which each student has a code, and
     no page or table with names. To put the names back, run it again without --anonymous.
     """
@@ -219,6 +231,7 @@ def grade(
         moodle=moodle,
         adjustments=adjustments,
         explain_hidden=explain_hidden,
+        receipt_key=receipt_key,
         plan=plan,
     )
     run_options = classroom.RunOptions(
@@ -240,10 +253,11 @@ def grade(
             classroom.grade_class(classroom.load_class(conditions, options, run_options))
         assignments.echo_secret_note(note)
         return
+    key = assignments.read_receipt_key(receipt_key)
     result = _grade_file(options, conditions)
     if secret:
         assignments.echo_secret_note(note)
-    _write_results(out, result)
+    _write_results(out, result, key)
 
 
 def _check_grading_options(
@@ -265,8 +279,25 @@ def _check_grading_options(
             "--anonymous needs --secret-file, because without a secret anybody with the roster can "
             "compute the codes"
         )
+    if options.receipt_key is not None:
+        _require_credit(options)
     if submission.is_file():
         _require_no_class_options(options, run_options)
+
+
+def _require_credit(options: classroom.ClassOptions) -> None:
+    """Raise an InputError if the scores are not for credit, so that there is nothing to sign."""
+    missing = []
+    if options.tier == "practice":
+        missing.append("--tier strict or container")
+    if options.secret_file is None:
+        missing.append("--secret-file")
+    if options.submissions.is_file() and not options.student:
+        missing.append("--student")
+    if missing:
+        raise InputError(
+            f"--receipt-key needs {' and '.join(missing)}: hdrlab signs only scores for credit"
+        )
 
 
 def _require_no_class_options(
@@ -308,11 +339,19 @@ def _grade_file(options: classroom.ClassOptions, conditions: "GradingOptions") -
     return result
 
 
-def _write_results(out: Path, result: "Result") -> None:
-    """Write all result files of a single submission, and print the path of the feedback page."""
+def _write_results(out: Path, result: "Result", key: "SigningKey | None") -> None:
+    """Write all result files of a single submission, and print the path of the feedback page.
+
+    With a key, the files contain a signed receipt.
+    """
     from hdrlab.course.reports import gradebook
 
-    gradebook.write_results(out, result)
+    receipt = ""
+    if key is not None:
+        from hdrlab.course.reports import receipts
+
+        receipt = receipts.sign(result, [result.student], key)
+    gradebook.write_results(out, result, receipt=receipt)
     click.echo(out / "feedback.html")
 
 
@@ -382,7 +421,9 @@ def regrade(
     listed = {course.roster.find_team(name) for name in only} | set(requested)
     with temporary_folder(), grading_jobs.lock_folder(results):
         _, changed = grading_jobs.split_finished(results / "results", all_jobs)
-        new_results = classroom.run_jobs(graded_class, changed, results / "regrade")
+        # results that do not count yet get no receipt
+        unsigned_class = replace(graded_class, receipt_key=None)
+        new_results = classroom.run_jobs(unsigned_class, changed, results / "regrade")
         common.echo_warnings(classroom.describe_failures(new_results))
         changes = regrading.find_score_changes(
             results, all_jobs, policy=policy, listed=listed, requests=requested
@@ -398,10 +439,50 @@ def regrade(
             )
             common.echo_warnings(notes)
             for result in grading_jobs.split_finished(results / "results", all_jobs)[0]:
-                explain_hidden = graded_class.options.explain_hidden
-                run.write_feedback(results, result, explain_hidden=explain_hidden)
+                run.write_feedback(
+                    results,
+                    result,
+                    explain_hidden=graded_class.options.explain_hidden,
+                    sign=graded_class.receipt_signer(),
+                )
             page, _ = classroom.write_books(graded_class)
             click.echo(page)
+
+
+@click.command(cls=common.Command)
+@click.argument("receipts", metavar="RECEIPT", type=common.EXISTING_FILE)
+@click.option(
+    "--key",
+    required=True,
+    type=common.EXISTING_FILE,
+    help="Public key of the course, a file that its instructor has published.",
+)
+@click.option(
+    "--submission",
+    type=common.EXISTING_FILE,
+    help="Submitted file, to verify that the receipt is for this file.",
+)
+def receipt(*, receipts: Path, key: Path, submission: Path | None) -> None:
+    """Verify the RECEIPT for the points of a submission.
+
+    RECEIPT is the file receipt.txt of a student, or receipts.txt of a class. hdrlab verifies
+    that the owner of the key signed each line, and that no byte was changed since. This needs
+    neither the network nor the secret of the course.
+    """
+    common.require_modules("class", ["cryptography"])
+    from hdrlab.course.reports import receipts as receipt_lines
+
+    contents = receipt_lines.verify_file(receipts, receipt_lines.read_public_key(key))
+    if submission is not None:
+        receipt_lines.verify_submission(contents, submission)
+    for content in contents:
+        students = ", ".join(content["students"])
+        click.echo(
+            f"valid: {content['homework']}, {students}: "
+            f"{content['points']:g} of {content['of']:g} points"
+        )
+    if submission is not None:
+        click.echo(f"valid: {submission.name} is the submission of this receipt")
 
 
 @click.command(cls=common.Command)

@@ -1,5 +1,6 @@
 """A regrade: a preview, a policy, all results or none, and a signed entry in the journal."""
 
+import html
 import json
 import os
 import random
@@ -316,6 +317,71 @@ def test_a_missing_secret_is_reported_and_not_replaced(folder, capsys):
     capsys.readouterr()
     run("regrade", "out", code=2)
     assert "secret.txt: No such file" in capsys.readouterr().err and not Path("secret.txt").exists()
+
+
+def receipts(out="out"):
+    """Return the receipts of a class by team, as its instructor and its teams have them."""
+    lines = (Path(out) / "receipts.txt").read_text().splitlines()
+    by_team = {json.loads(line)["team"]: f"{line}\n" for line in lines}
+    for team, line in by_team.items():
+        assert (Path(out) / "feedback" / team / "receipt.txt").read_text() == line
+    return by_team
+
+
+def test_each_team_gets_a_receipt_and_a_repeated_run_the_same_one(folder, capsys):
+    grade("out", "--receipt-key", "key.pem")
+    first = receipts()
+    assert set(first) == set(TEAMS)
+    contents_of_receipts = {team: json.loads(line) for team, line in first.items()}
+    assert {team: content["points"] for team, content in contents_of_receipts.items()} == {
+        team: json.loads(guessed(team))["score"] for team in TEAMS
+    }
+    assert contents_of_receipts["t"]["students"] == ["b1", "b2"]
+    page = Path("out/feedback/b3/feedback.html").read_text()
+    assert first["b3"].strip() in html.unescape(page)
+    capsys.readouterr()
+    run("receipt", "out/receipts.txt", "--key", "key.pem.pub")
+    assert capsys.readouterr().out.count("valid: hw2, ") == len(TEAMS)
+    grade("out", "--receipt-key", "key.pem")
+    grade("elsewhere", "--receipt-key", "key.pem")
+    assert receipts() == receipts("elsewhere") == first
+
+
+def test_receipts_can_be_added_to_a_graded_class_and_left_out_again(folder):
+    grade()
+    without = contents("out", *BOOKS, "results", "feedback")
+    grade("out", "--receipt-key", "key.pem")
+    assert set(receipts()) == set(TEAMS)
+    grade()
+    assert contents("out", *BOOKS, "results", "feedback") == without
+    assert not Path("out/receipts.txt").exists()
+
+
+def test_a_regrade_signs_only_the_scores_that_count(folder):
+    grade("out", "--receipt-key", "key.pem")
+    first = receipts()
+    _, after = moved(1, 1)
+    run("regrade", "out")
+    assert receipts() == first
+    assert not list(Path("out/regrade").rglob("receipt*"))
+    run("regrade", "out", "--apply")
+    points = {team: json.loads(line)["points"] for team, line in receipts().items()}
+    assert points == after
+    run("receipt", "out/receipts.txt", "--key", "key.pem.pub")
+
+
+def test_a_regrade_never_creates_a_key(folder, capsys):
+    grade("out", "--receipt-key", "key.pem")
+    Path("key.pem").unlink()
+    capsys.readouterr()
+    run("regrade", "out", code=2)
+    assert "key.pem: No such file" in capsys.readouterr().err and not Path("key.pem").exists()
+
+
+def test_anonymous_grading_writes_no_receipt(folder):
+    grade("out", "--receipt-key", "key.pem", "--anonymous")
+    assert not list(Path("out").rglob("receipt*"))
+    assert not any(b"signature" in data for data in contents("out", "anonymous").values())
 
 
 @pytest.mark.parametrize(

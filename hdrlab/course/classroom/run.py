@@ -7,7 +7,7 @@ RESULTS/
 """
 
 import tempfile
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -203,13 +203,25 @@ def select_submissions(
     return selected
 
 
-def write_feedback(out: Path, result: JobResult, *, explain_hidden: bool = False) -> JobResult:
+def write_feedback(
+    out: Path,
+    result: JobResult,
+    *,
+    explain_hidden: bool = False,
+    sign: Callable[[results.Result], str] | None = None,
+) -> JobResult:
     """Write the feedback of a team, unless it exists and belongs to this result.
 
     The team's copy of the result, result.json, is deleted first and written last: while it exists
     and is equal, the feedback is complete. If writing fails, the returned JobResult has a `problem`,
-    and the other teams still get their feedback. With `explain_hidden`, it also says why hidden
-    checks failed.
+    and the other teams still get their feedback.
+
+    Parameters
+    ----------
+    out : the folder with the results of the class
+    result : the outcome of the team's job
+    explain_hidden : whether the feedback also says why hidden checks failed
+    sign : returns the receipt for a result; without it, the feedback has no receipt
     """
     if result.path is None:
         return result
@@ -217,24 +229,35 @@ def write_feedback(out: Path, result: JobResult, *, explain_hidden: bool = False
         data = result.path.read_bytes()
         if explain_hidden:
             data = results.reveal_hidden_checks(data)
-        _write_team_folder(out / "feedback" / result.job.owner, data)
+        receipt = ""
+        if sign is not None:
+            receipt = sign(results.from_json(data))
+        _write_team_folder(out / "feedback" / result.job.owner, data, receipt)
     except Exception as error:
         problem = sanitize_line(f"{type(error).__name__}: {error}", 200)
         return replace(result, problem=f"its feedback could not be written: {problem}")
     return result
 
 
-def _write_team_folder(folder: Path, data: bytes) -> None:
+def _write_team_folder(folder: Path, data: bytes, receipt: str) -> None:
     """Write all feedback files of a team from the JSON of its result, unless they are current."""
     team_json = folder / "result.json"
     team_data = results.for_team(data)
     is_complete = all((folder / name).is_file() for name in gradebook.FILES)
-    if is_complete and team_json.read_bytes() == team_data:
+    if is_complete and team_json.read_bytes() == team_data and _has_receipt(folder, receipt):
         return
     jobs.make_private(folder.parent)
     jobs.make_private(folder)
     team_json.unlink(missing_ok=True)
-    gradebook.write_results(folder, results.from_json(data), team_data)
+    gradebook.write_results(folder, results.from_json(data), team_data, receipt)
+
+
+def _has_receipt(folder: Path, receipt: str) -> bool:
+    """Return whether a team's folder holds this receipt, or none if it is ""."""
+    path = folder / gradebook.RECEIPT_FILE
+    if not path.is_file():
+        return not receipt
+    return path.read_bytes() == f"{receipt}\n".encode()
 
 
 def read_results(out: Path, all_jobs: Sequence[GradingJob]) -> Iterator[results.Result]:

@@ -36,12 +36,19 @@ def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
     return str(environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
 
 
-def page(result: results.Result, *, private: bool = False) -> str:
-    """Return a Result as a page in one file, which loads nothing and runs no script."""
+def page(result: results.Result, *, private: bool = False, receipt: str = "") -> str:
+    """Return a Result as a page in one file, which loads nothing and runs no script.
+
+    Parameters
+    ----------
+    result : Result
+    private : whether the reader is the instructor, who sees the details of hidden checks, too
+    receipt : the signed line about the Result, which the page shows, or ""
+    """
     return (
         environment()
         .get_template("feedback_page.html")
-        .render(result=result, private=private)
+        .render(result=result, private=private, receipt=receipt)
         .lstrip()
     )
 

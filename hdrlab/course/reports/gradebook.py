@@ -14,6 +14,7 @@ from hdrlab.io.files import write
 
 COLUMNS = ("student", "homework", "tier", "score", "max_score")
 FILES = ("result.json", "gradescope.json", "junit.xml", "result.csv", "feedback.html")
+RECEIPT_FILE = "receipt.txt"
 
 
 def gradescope(result: results.Result) -> bytes:
@@ -69,27 +70,32 @@ def table(result: results.Result) -> str:
 
 
 def write_results(
-    folder: Path, result: results.Result, team_json: bytes | None = None
+    folder: Path, result: results.Result, team_json: bytes | None = None, receipt: str = ""
 ) -> list[Path]:
     """Write a Result in all formats into a folder, and return the files.
 
     Only the owner of the files can read them. The JSON is written last: if it exists, so do all
-    the others.
+    the others. Without a receipt, the receipt of an earlier result is deleted.
 
     Parameters
     ----------
     folder : created if it does not exist
     result : Result
     team_json : what result.json holds; by default, the whole Result
+    receipt : the line that `receipts.sign` returned for the Result, or ""
     """
     contents = {
         "gradescope.json": gradescope(result),
         "junit.xml": junit(result),
         "result.csv": table(result).encode(),
-        "feedback.html": feedback.page(result).encode(),
-        "result.json": results.to_json(result) if team_json is None else team_json,
+        "feedback.html": feedback.page(result, receipt=receipt).encode(),
     }
+    if receipt:
+        contents[RECEIPT_FILE] = f"{receipt}\n".encode()
+    contents["result.json"] = results.to_json(result) if team_json is None else team_json
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if not receipt:
+        (folder / RECEIPT_FILE).unlink(missing_ok=True)
     for name, data in contents.items():
         write(folder / name, data, private=True)
-    return [folder / name for name in FILES]
+    return [folder / name for name in contents]
