@@ -4,14 +4,21 @@ import time
 from contextlib import closing
 from datetime import datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from hdrlab.cli import common
 from hdrlab.errors import HdrlabError, InputError
 
+if TYPE_CHECKING:
+    from sqlite3 import Connection
+
+    from hdrlab.course.gallery.collect import Entry
+
 SERVER_MODULES = ("starlette", "uvicorn")
 MAX_TITLE_LENGTH = 80
+DEFAULT_MARKS = 3
 MAX_NOTE_LENGTH = 300
 
 folder_argument = click.argument("folder", type=common.INPUT_PATH)
@@ -32,10 +39,23 @@ def gallery() -> None:
     help="End of the vote, such as 2026-12-01T23:59+01:00.",
 )
 @click.option(
-    "--marks", type=click.IntRange(1, 20), default=3, help="Largest number of votes of one student."
+    "--marks",
+    type=click.IntRange(1, 20),
+    help="Largest number of votes of one student.  [default: 3]",
 )
-def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
-    """Create a gallery in FOLDER."""
+@click.option(
+    "--pairs",
+    type=click.IntRange(1, 200),
+    help="Instead of votes, ask each student which of two images is better, for up to so many "
+    "pairs, such as 20.",
+)
+def init(*, folder: Path, title: str, closes: str, marks: int | None, pairs: int | None) -> None:
+    """Create a gallery in FOLDER.
+
+    Students mark the images that they like best, and hdrlab counts their votes. With --pairs, they
+    see two images at a time and choose the better one. hdrlab then estimates the strength of each
+    image with an interval, and compares the votes with TMQI and PU-SSIM.
+    """
     from hdrlab.course.gallery import store
     from hdrlab.course.sanitize import sanitize_line
 
@@ -45,10 +65,19 @@ def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
         raise InputError(
             f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
         ) from None
-    store.create(folder, sanitize_line(title, MAX_TITLE_LENGTH), end, marks)
+    if marks is not None and pairs is not None:
+        raise InputError("--marks and --pairs exclude each other; pass one of them")
+    name = sanitize_line(title, MAX_TITLE_LENGTH)
+    if pairs is not None:
+        store.create(folder, name, end, pairs=pairs)
+        limit = f"{pairs} pairs"
+    else:
+        votes = marks or DEFAULT_MARKS
+        store.create(folder, name, end, votes)
+        limit = f"{votes} votes"
     click.echo(
         f"{folder}: gallery created; vote open until {store.format_time(end)}, "
-        f"up to {marks} votes for each student"
+        f"up to {limit} for each student"
     )
 
 
@@ -60,8 +89,17 @@ def init(*, folder: Path, title: str, closes: str, marks: int) -> None:
     type=common.INPUT_PATH,
     help="Class list: a CSV file with the column student, and optionally name, email and team.",
 )
+@click.option(
+    "--map",
+    "radiance_map",
+    type=common.EXISTING_FILE,
+    help="Radiance map that all images show, for TMQI and PU-SSIM in a gallery with --pairs. An "
+    "archive of hdrlab submit has its own.",
+)
 @click.argument("artifacts", nargs=-1, type=common.INPUT_PATH)
-def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
+def add(
+    *, folder: Path, roster: Path, radiance_map: Path | None, artifacts: tuple[Path, ...]
+) -> None:
     """Add voters and project images (ARTIFACTS) to the gallery in FOLDER.
 
     The voters are the students of the roster. ARTIFACTS are files or folders. The name of a
@@ -76,15 +114,19 @@ def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
 
     students = rosters.read(roster)
     added = 0
+    scored = 0
     refused = 0
     with temporary_folder(), closing(store.connect(folder)) as db:
         with store.transaction(db):
+            has_pairs = store.settings(db).pairs > 0
             for student in students.students:
                 store.admit(db, store.Voter(student.id, student.name, student.team))
         for source, name in common.progress(collect.sources(artifacts), "adding"):
             try:
                 with collect.entry(source, students, name) as entry:
                     lost_votes = collect.hang(db, folder, entry, source.name)
+                    if has_pairs:
+                        scored += _score(db, source.name, entry, radiance_map)
             except HdrlabError as error:
                 refused += 1
                 _echo_note(f"{source.name}: {error}")
@@ -96,7 +138,21 @@ def add(*, folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
                     f"whose {lost_votes} votes no longer count"
                 )
     refusals = f", {refused} refused" if refused else ""
-    click.echo(f"{folder}: {len(students.students)} voters, {added} artifacts added{refusals}")
+    scores = f", {scored} of them with TMQI and PU-SSIM" if has_pairs else ""
+    click.echo(
+        f"{folder}: {len(students.students)} voters, {added} artifacts added{scores}{refusals}"
+    )
+
+
+def _score(db: "Connection", name: str, entry: "Entry", radiance_map: Path | None) -> bool:
+    """Score an artifact against its radiance map; note why if that fails, and return whether."""
+    from hdrlab.course.gallery import collect
+
+    try:
+        return collect.score_entry(db, entry, radiance_map)
+    except HdrlabError as error:
+        _echo_note(f"{name}: no TMQI and PU-SSIM: {error}")
+        return False
 
 
 def _echo_note(text: str) -> None:
@@ -235,9 +291,11 @@ def close(*, folder: Path) -> None:
 def results(*, folder: Path, out: Path) -> None:
     """Write the results, after the end of the vote.
 
-    For each student, the CSV file shows whether they voted, and how many votes their image got.
+    For each student, the CSV file shows whether they voted, and how many votes their image got. In
+    a gallery with --pairs, it also has the chance in percent that a student prefers this image to
+    an average one, with a 95 % interval.
     """
-    from hdrlab.course.gallery import ballots, store
+    from hdrlab.course.gallery import ballots, pairs, store
     from hdrlab.course.students import csv_tables
 
     _require_no_gallery_file(folder, out)
@@ -248,9 +306,15 @@ def results(*, folder: Path, out: Path) -> None:
                 f"{folder}: the vote is open until {settings.closes}; "
                 "wait, or run hdrlab gallery close"
             )
-        rows = list(ballots.gradebook(db))
+        if settings.pairs:
+            columns: tuple[str, ...] = pairs.GRADEBOOK_COLUMNS
+            rows = list(pairs.gradebook(db))
+            method = pairs.METHOD.format(pairs=settings.pairs)
+        else:
+            columns = ballots.GRADEBOOK_COLUMNS
+            rows = list(ballots.gradebook(db))
+            method = ballots.METHOD.format(marks=settings.marks)
         changes = store.changes(db)
     common.echo_notes(changes)
-    csv_tables.write_csv(out, ballots.GRADEBOOK_COLUMNS, rows, private=True)
-    method = ballots.METHOD.format(marks=settings.marks)
+    csv_tables.write_csv(out, columns, rows, private=True)
     click.echo(f"{out}: {len(rows)} students. {method}")

@@ -240,3 +240,43 @@ def test_the_results_are_shown_after_the_end_of_the_vote(served, page, axe, tmp_
         server.terminate()
         server.wait()
     assert page.problems == []
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_pairs_are_judged_with_the_keyboard_and_their_results_fit_the_screen(
+    browser, page, axe, tmp_path, width
+):
+    from benchmarks import gallery as bench
+
+    now = datetime.now(UTC)
+    room = small.make_gallery(tmp_path, TEAMS, pairs=3, closes=now + timedelta(days=1))
+    with store.writing(room.folder) as db:
+        for k, id in enumerate(room.artifacts.values()):
+            db.execute("INSERT INTO scores VALUES (?, ?, ?)", (id, k / 10, -k / 10))
+    server, address = bench.start(room.folder)
+    try:
+        page.set_viewport_size({"width": width, "height": 844})
+        page.goto(fresh_link((room, address), "ann1"))
+        page.get_by_role("button", name="Open the gallery").click()
+        for number in range(1, 4):
+            page.get_by_text(f"Pair {number} of 3").wait_for()
+            assert axe(page, "html") == []
+            boxes = [button.bounding_box() for button in page.get_by_role("button").all()]
+            assert len(boxes) == 2
+            assert all(box["height"] >= 44 and box["y"] + box["height"] <= 844 for box in boxes)
+            tab_to(page, lambda on: on[0] == "BUTTON")
+            page.keyboard.press("Enter")
+        page.get_by_text("You have judged 3 pairs").wait_for()
+        assert axe(page, "html") == []
+        with store.writing(room.folder) as db:
+            assert db.execute("SELECT count(*) FROM comparisons").fetchone() == (3,)
+            store.close(db, now)
+        page.goto(f"{address}/results")
+        page.get_by_role("heading", name="The class against the metrics").wait_for()
+        assert page.locator(".interval").count() == len(TEAMS) + 3
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert axe(page, "html") == []
+        assert page.problems == []
+    finally:
+        server.terminate()
+        server.wait()

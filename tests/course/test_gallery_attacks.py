@@ -409,6 +409,72 @@ def test_an_artifact_without_an_owner_in_the_roster_is_refused(tmp_path, name):
         pass
 
 
+def ask_pair(client):
+    """Return the two artifacts that the page asks about."""
+    return re.findall(r'name="of" value="(\w+)"', client.get("/").text)
+
+
+def judge_pair(client, key, pair, winner, **headers):
+    form = {"key": key, "of": pair, "winner": winner}
+    return client.post("/pair", form, headers=ORIGIN | headers)
+
+
+def answers(room):
+    with closing(store.connect(room.folder)) as db:
+        return db.execute("SELECT voter, first, second, winner FROM comparisons").fetchall()
+
+
+def test_a_pair_of_ones_choice(tmp_path):
+    room = small.make_gallery(tmp_path, pairs=2)
+    with browser(room) as client:
+        key = enter(client, room, "ann")
+        asked = ask_pair(client)
+        other = (set(room.artifacts.values()) - {*asked, room.artifacts["team1"]}).pop()
+        refused = [
+            ([asked[0], other], other),
+            ([asked[0], room.artifacts["team1"]], room.artifacts["team1"]),
+            ([asked[0], asked[0]], asked[0]),
+            ([asked[0]], asked[0]),
+            (asked, other),
+            (asked, ""),
+            ([asked[0], "nothing"], asked[0]),
+            ([*asked, other], other),
+        ]
+        for pair, winner in refused:
+            assert judge_pair(client, key, pair, winner).status == 409
+        assert vote(client, key, asked[0]).status == 409
+        assert judge_pair(client, "0" * 64, asked, asked[0]).status == 403
+        assert judge_pair(client, key, asked, asked[0], origin="http://evil.test").status == 403
+        assert answers(room) == []
+        for _ in range(2):
+            pair = ask_pair(client)
+            assert judge_pair(client, key, pair, pair[0]).status == 303
+        assert ask_pair(client) == []
+        first, second = sorted((asked[0], other))
+        rows = [
+            ("ann", first, second),  # a third pair
+            ("ben", *sorted((asked[0], room.artifacts["team1"]))),  # of the own team
+        ]
+        for voter, first, second in rows:
+            with pytest.raises(sqlite3.IntegrityError), store.writing(room.folder) as db:
+                db.execute(
+                    "INSERT INTO comparisons VALUES (?, ?, ?, ?, 0)", (voter, first, second, first)
+                )
+        room.clock.now = small.CLOSES.timestamp()
+        assert judge_pair(client, key, asked, asked[1]).status == 409
+        assert len(answers(room)) == 2
+
+
+def test_a_second_answer(tmp_path):
+    room = small.make_gallery(tmp_path, pairs=1)
+    with browser(room) as client:
+        key = enter(client, room, "ann")
+        pair = ask_pair(client)
+        for winner in (pair[0], pair[0], pair[1]):
+            assert judge_pair(client, key, pair[::-1], winner).status == 303
+        assert answers(room) == [("ann", *sorted(pair), pair[1])]
+
+
 def test_votes_erased(client, room, tmp_path):
     eve = room.artifacts["eve"]
     fay = room.artifacts["fay"]

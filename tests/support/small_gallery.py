@@ -58,7 +58,15 @@ def write_photo(path, seed=0, shape=(60, 90, 3)):
 
 
 def make_gallery(
-    folder, teams=TEAMS, *, marks=2, closes=CLOSES, names=None, title="{team}'s view", caption=""
+    folder,
+    teams=TEAMS,
+    *,
+    marks=2,
+    pairs=0,
+    closes=CLOSES,
+    names=None,
+    title="{team}'s view",
+    caption="",
 ):
     """Make a gallery with one artifact of each team.
 
@@ -67,6 +75,7 @@ def make_gallery(
     folder : the gallery is made in `folder / "gallery"`
     teams : the students of each team
     marks : how many votes a student has
+    pairs : how many pairs a student is asked about, instead of votes
     closes : when the vote ends
     names : the names of students; by default, the id with a capital letter
     title, caption : of each artifact
@@ -74,7 +83,7 @@ def make_gallery(
     names = names or {}
     gallery = folder / "gallery"
     students = [student for members in teams.values() for student in members]
-    store.create(gallery, "Spring", closes, marks)
+    store.create(gallery, "Spring", closes, 0 if pairs else marks, pairs=pairs)
     with closing(store.connect(gallery)) as db:
         with store.transaction(db):
             for team, members in teams.items():

@@ -1,6 +1,9 @@
 """The class votes on its artifacts: a small web application over one folder.
 
 store, ballots       the database: what hangs, who marked what; places, and columns for the gradebook
+pairs                instead of ballots: which of two is better, asked pair by pair
+bradley_terry        strengths of artifacts from the answers about pairs, with intervals
+agreement            how often the class agrees with TMQI and PU-SSIM
 tokens               who may: personal links and sessions
 collect, pictures    what students hand in, decoded and encoded again
 web                  the pages, what stands before them, and the one who writes
@@ -20,6 +23,8 @@ forged session         as links; renewing a link ends its session               
 own team's artifact    refused by a trigger of the database                        a_vote_for_the_own_team
 second ballot          the voter is the ballot's key                               a_second_ballot
 too many votes         refused by a trigger of the database                        too_many_votes
+pair of one's choice   the gallery asks, and accepts no other pair                 a_pair_of_ones_choice
+second answer          voter and pair are the answer's key                         a_second_answer
 votes for nothing      a foreign key                                               a_vote_for_no_artifact
 late ballot            the server's clock, read within the transaction             a_late_ballot
 others' ballots        no page shows a ballot but one's own; results count them    the_ballots_of_others

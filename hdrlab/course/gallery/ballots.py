@@ -61,6 +61,8 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
     settings = store.settings(db)
     if not settings.is_open(now):
         raise NotAccepted("The vote is closed. Your last ballot counts.")
+    if not settings.marks:
+        raise NotAccepted("This gallery asks about pairs, and has no ballots.")
     votes = [(voter, artifact) for artifact in sorted(set(chosen))]
     update = "ON CONFLICT (voter) DO UPDATE SET cast_at = excluded.cast_at"
     db.execute("SAVEPOINT ballot")

@@ -12,12 +12,13 @@ import sqlite3
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from hdrlab.course.gallery import pictures, store
-from hdrlab.course.projects.project import MANIFEST_FILE
+from hdrlab.course.gallery.agreement import score
+from hdrlab.course.projects.project import MANIFEST_FILE, find_map
 from hdrlab.course.sanitize import sanitize_line
 from hdrlab.course.students.roster import Roster
 from hdrlab.course.submissions.archives import unpack
@@ -28,6 +29,7 @@ MAX_CAPTION_CHARACTERS = 280
 # of an image's text file
 MAX_TEXT_CHARACTERS = 1_000_000
 MAX_MANIFEST_BYTES = 1_000_000
+MAX_MAP_BYTES = 256_000_000
 ID_CHARACTERS = 24
 ARCHIVE_SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
 IGNORED_SUFFIXES = (".txt", ".csv")
@@ -35,12 +37,13 @@ IGNORED_SUFFIXES = (".txt", ".csv")
 
 @dataclass(frozen=True)
 class Entry:
-    """An artifact that a team hands in, with the path of its image."""
+    """An artifact that a team hands in, with the paths of its image and, if it has one, its map."""
 
     team: str
     title: str
     caption: str
     picture: Path
+    radiance_map: Path | None = None
 
 
 def sources(paths: Sequence[Path]) -> list[tuple[Path, str]]:
@@ -126,6 +129,35 @@ def hang(db: sqlite3.Connection, folder: Path, new: Entry, source: str = "") -> 
         return store.hang(db, artifact, sanitize_line(source, 80))
 
 
+def score_entry(db: sqlite3.Connection, new: Entry, radiance_map: Path | None = None) -> bool:
+    """Store TMQI and PU-SSIM of an artifact on the wall, if it has a radiance map; return whether.
+
+    Parameters
+    ----------
+    db : connection to the gallery's database
+    new : the artifact, after `hang`
+    radiance_map : the map of an artifact that has none of its own
+
+    Raises
+    ------
+    InputError
+        For a map that cannot be read, is too large, has no light, or does not fit the artifact.
+    """
+    path = new.radiance_map or radiance_map
+    if path is None:
+        return False
+    if path.stat().st_size > MAX_MAP_BYTES:
+        raise InputError(f"{path.name}: expected a radiance map of at most {MAX_MAP_BYTES} bytes")
+    scores = score(new.picture, path)
+    insert = (
+        "INSERT INTO scores SELECT id, ?, ? FROM artifacts WHERE hangs AND team = ? "
+        "ON CONFLICT (artifact) DO UPDATE SET tmqi = excluded.tmqi, pu_ssim = excluded.pu_ssim"
+    )
+    with store.transaction(db):
+        db.execute(insert, (scores.tmqi, scores.pu_ssim, new.team))
+    return True
+
+
 def _image_entry(source: Path, team: str) -> Entry:
     """Return the Entry of an image, with the title and caption of the text file beside it."""
     text_file = source.with_suffix(".txt")
@@ -160,7 +192,9 @@ def _archive_entry(folder: Path, team: str) -> Entry:
         raise InputError(
             f"expected an artifact in the archive, got the name {sanitize_line(artifact, 40)!r}"
         )
-    return _make_entry(team, title, caption, path_of_name[artifact])
+    entry = _make_entry(team, title, caption, path_of_name[artifact])
+    files = [path for path in path_of_name.values() if path.parent == folder]
+    return replace(entry, radiance_map=find_map(sorted(files)))
 
 
 def _make_entry(team: str, title: str, caption: str, picture: Path) -> Entry:

@@ -1,7 +1,8 @@
 -- The tables of a gallery, and what its database forbids: see store.py.
 CREATE TABLE gallery (
   one INTEGER PRIMARY KEY CHECK (one = 1), title TEXT NOT NULL, closes TEXT NOT NULL,
-  marks INTEGER NOT NULL CHECK (marks > 0), secret BLOB NOT NULL) STRICT;
+  marks INTEGER NOT NULL CHECK (marks >= 0), secret BLOB NOT NULL,
+  pairs INTEGER NOT NULL CHECK (pairs >= 0), CHECK ((marks = 0) <> (pairs = 0))) STRICT;
 CREATE TABLE artifacts (
   id TEXT PRIMARY KEY, team TEXT NOT NULL, title TEXT NOT NULL, caption TEXT NOT NULL,
   width INTEGER NOT NULL, height INTEGER NOT NULL, hangs INTEGER NOT NULL DEFAULT 1) STRICT;
@@ -24,3 +25,22 @@ CREATE TRIGGER gone BEFORE INSERT ON votes WHEN (SELECT NOT hangs FROM artifacts
 CREATE TRIGGER many BEFORE INSERT ON votes WHEN
   (SELECT count(*) FROM votes WHERE voter = NEW.voter) >= (SELECT marks FROM gallery)
   BEGIN SELECT RAISE(ABORT, 'too many'); END;
+CREATE TABLE comparisons (
+  voter TEXT NOT NULL REFERENCES voters, first TEXT NOT NULL REFERENCES artifacts,
+  second TEXT NOT NULL REFERENCES artifacts, winner TEXT NOT NULL, cast_at REAL NOT NULL,
+  PRIMARY KEY (voter, first, second), CHECK (first < second), CHECK (winner IN (first, second))) STRICT, WITHOUT ROWID;
+CREATE TRIGGER own_of_pair BEFORE INSERT ON comparisons WHEN
+  (SELECT team FROM voters WHERE id = NEW.voter) IN
+  (SELECT team FROM artifacts WHERE id IN (NEW.first, NEW.second))
+  BEGIN SELECT RAISE(ABORT, 'own team'); END;
+CREATE TRIGGER gone_of_pair BEFORE INSERT ON comparisons WHEN
+  EXISTS (SELECT 1 FROM artifacts WHERE NOT hangs AND id IN (NEW.first, NEW.second))
+  BEGIN SELECT RAISE(ABORT, 'hangs no longer'); END;
+CREATE TRIGGER many_pairs BEFORE INSERT ON comparisons WHEN
+  NOT EXISTS (SELECT 1 FROM comparisons
+    WHERE voter = NEW.voter AND first = NEW.first AND second = NEW.second) AND
+  (SELECT count(*) FROM comparisons JOIN artifacts a ON a.id = first JOIN artifacts b ON b.id = second
+    WHERE voter = NEW.voter AND a.hangs AND b.hangs) >= (SELECT pairs FROM gallery)
+  BEGIN SELECT RAISE(ABORT, 'too many'); END;
+CREATE TABLE scores (
+  artifact TEXT PRIMARY KEY REFERENCES artifacts, tmqi REAL NOT NULL, pu_ssim REAL NOT NULL) STRICT;

@@ -1,10 +1,11 @@
 """Store the gallery in one folder: its pictures, and a database in which each voter has one ballot.
 
-The database itself forbids what must never happen, whatever the program does: a second ballot (its
-key is the voter), a vote for one's own team, too many votes, or a vote for a replaced artifact
-(triggers), and a vote for an artifact that does not exist (a foreign key). A ballot is acknowledged
-once it is on the disk: WAL with full synchronization. A replaced artifact keeps its votes, which do
-not count.
+In a gallery that asks about pairs, a voter has one answer for each pair instead. The database itself
+forbids what must never happen, whatever the program does: a second ballot (its key is the voter), a
+second answer about a pair (its key is the voter and the pair), a vote for one's own team, too many
+votes, or a vote for a replaced artifact (triggers), and a vote for an artifact that does not exist
+(a foreign key). A ballot is acknowledged once it is on the disk: WAL with full synchronization. A
+replaced artifact keeps its votes, which do not count.
 """
 
 import errno
@@ -23,7 +24,7 @@ from hdrlab.io import temporary
 DATABASE = "gallery.sqlite"
 PICTURES = "pictures"
 SCHEMA_FILE = Path(__file__).parent / "schema.sql"
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 SECRET_BYTES = 32
 # seconds to wait while another process writes
 LOCK_TIMEOUT_SECONDS = 10
@@ -49,14 +50,16 @@ class Settings:
     ----------
     title : its title
     closes : the end of the vote
-    marks : the largest number of votes on a ballot
-    secret : the key for artifacts' ids and for the order on the wall
+    marks : the largest number of votes on a ballot; 0 in a gallery that asks about pairs
+    secret : the key for artifacts' ids, and for the order on the wall and of the pairs
+    pairs : the largest number of pairs that a voter is asked about; 0 in a gallery with ballots
     """
 
     title: str
     closes: datetime
     marks: int
     secret: bytes
+    pairs: int = 0
 
     def is_open(self, now: float) -> bool:
         """Return whether a ballot counts that arrives at this time, in seconds since the epoch."""
@@ -84,7 +87,9 @@ class Voter:
     team: str
 
 
-def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None:
+def create(
+    folder: str | Path, title: str, closes: datetime, marks: int = 0, *, pairs: int = 0
+) -> None:
     """Make a gallery in a folder that has none, completely or not at all.
 
     Parameters
@@ -93,13 +98,15 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
     title : the gallery's title
     closes : the end of the vote, with its time zone
     marks : the largest number of votes on a ballot
+    pairs : the largest number of pairs that a voter is asked about, instead of a ballot
 
     Raises
     ------
     FileExistsError
         If the folder has a gallery.
     InputError
-        For an end without a time zone, or fewer than 1 vote on a ballot.
+        For an end without a time zone, and unless one of `marks` and `pairs` is at least 1 and the
+        other 0.
     """
     folder = Path(folder)
     database = folder / DATABASE
@@ -107,12 +114,14 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
         raise InputError(
             f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}"
         )
-    if marks < 1:
-        raise InputError(f"expected at least 1 vote on a ballot, got {marks}")
+    if min(marks, pairs) != 0 or max(marks, pairs) < 1:
+        raise InputError(
+            f"expected at least 1 vote on a ballot or at least 1 pair, got {marks} and {pairs}"
+        )
     temporary.remove_leftovers(folder)
     if database.exists():
         raise _another_gallery(folder)
-    row = (title, closes.isoformat(), marks, secrets.token_bytes(SECRET_BYTES))
+    row = (title, closes.isoformat(), marks, secrets.token_bytes(SECRET_BYTES), pairs)
     with (
         _new_folders(folder / PICTURES, database),
         temporary.temporary_folder(folder, target=database) as scratch,
@@ -142,12 +151,12 @@ def _new_folders(folder: Path, database: Path) -> Iterator[None]:
         raise
 
 
-def _write_tables(path: Path, row: tuple[str, str, int, bytes]) -> None:
+def _write_tables(path: Path, row: tuple[str, str, int, bytes, int]) -> None:
     """Write the tables of a new gallery, with its settings, into an empty file."""
     schema = SCHEMA_FILE.read_text(encoding="utf8")
     with _disk_errors(path), closing(sqlite3.connect(path, isolation_level=None)) as db:
         db.executescript(f"BEGIN; {schema} PRAGMA user_version = {SCHEMA_VERSION};")
-        db.execute("INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", row)
+        db.execute("INSERT INTO gallery VALUES (1, ?, ?, ?, ?, ?)", row)
         db.execute("COMMIT")
 
 
@@ -245,9 +254,15 @@ def transaction(db: sqlite3.Connection) -> Iterator[None]:
 
 def settings(db: sqlite3.Connection) -> Settings:
     """Read the settings of a gallery."""
-    row = db.execute("SELECT title, closes, marks, secret FROM gallery").fetchone()
-    title, closes, marks, secret = row
-    return Settings(title=title, closes=datetime.fromisoformat(closes), marks=marks, secret=secret)
+    row = db.execute("SELECT title, closes, marks, secret, pairs FROM gallery").fetchone()
+    title, closes, marks, secret, pairs = row
+    return Settings(
+        title=title,
+        closes=datetime.fromisoformat(closes),
+        marks=marks,
+        secret=secret,
+        pairs=pairs,
+    )
 
 
 def close(db: sqlite3.Connection, now: datetime) -> None:
@@ -300,7 +315,11 @@ def hang(db: sqlite3.Connection, artifact: Artifact, source: str = "") -> int:
     db.execute(insert, asdict(artifact))
     if earlier is None or earlier[0] == artifact.id:
         return 0
-    (votes,) = db.execute("SELECT count(*) FROM votes WHERE artifact = ?", earlier).fetchone()
+    query = (
+        "SELECT (SELECT count(*) FROM votes WHERE artifact = :id) "
+        "+ (SELECT count(*) FROM comparisons WHERE :id IN (first, second))"
+    )
+    (votes,) = db.execute(query, {"id": earlier[0]}).fetchone()
     now = datetime.now(UTC).isoformat()
     change = (now, artifact.team, source, earlier[0], artifact.id, votes)
     db.execute("INSERT INTO changes VALUES (?, ?, ?, ?, ?, ?)", change)

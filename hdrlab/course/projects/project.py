@@ -110,18 +110,14 @@ def read_project(folder: str | Path) -> Project:
     report_sources = [folder / name for name in REPORT_SOURCES if folder / name in files]
     words = report_sources[0] if report_sources else None
     page = folder / REPORT_PAGE
-    maps = _with_suffix(top_files, MAP_SUFFIXES)
     curves = _with_suffix(top_files, tuple(response_files.FORMS))
     artifacts = _with_suffix(top_files, ARTIFACT_SUFFIXES)
-    radiance_map = _first_named(maps, MAP_STEMS)
-    if radiance_map is None and len(maps) == 1:
-        radiance_map = maps[0]
     return Project(
         folder=folder,
         about=_read_about(folder / ABOUT_FILE),
         files=files,
         photographs=photographs,
-        map=radiance_map,
+        map=find_map(top_files),
         curve=_first_named(curves, CURVE_STEMS),
         artifact=_first_named(artifacts, (ARTIFACT_STEM,)),
         words=words,
@@ -130,6 +126,15 @@ def read_project(folder: str | Path) -> Project:
             path for path in files if path.suffix.lower() in FILES["sources"] and path != words
         ),
     )
+
+
+def find_map(files: list[Path]) -> Path | None:
+    """Return the radiance map among the files of a project: by its name, or the only one."""
+    maps = _with_suffix(files, MAP_SUFFIXES)
+    named = _first_named(maps, MAP_STEMS)
+    if named is None and len(maps) == 1:
+        return maps[0]
+    return named
 
 
 def _iter_files(folder: Path) -> Iterator[Path]:

@@ -1,4 +1,4 @@
-"""The gallery's web application: the wall, one artifact or two side by side, the ballot, the results.
+"""The gallery's web application: the wall or a pair, artifacts in detail, the ballot, the results.
 
 Every answer is a page, a picture or a line of JSON. Nobody uploads anything here or signs up:
 instructors add artifacts and voters on the command line. Addresses hold no state, and pages have no
@@ -20,7 +20,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import ASGIApp
 
-from hdrlab.course.gallery import ballots, pictures, store, tokens
+from hdrlab.course.gallery import agreement, ballots, pairs, pictures, store, tokens
 from hdrlab.course.gallery.web.front import HERE, STATUS_MESSAGES, Front
 from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_origin
 
@@ -39,9 +39,59 @@ USED_LINK_MESSAGE = (
 class Gallery(Front):
     """The pages of the gallery."""
 
-    async def wall(self, request: Request) -> Response:
-        """Show all artifacts, in the voter's own order, with the voter's ballot."""
+    async def home(self, request: Request) -> Response:
+        """Show the next pair, in a gallery that asks about pairs; otherwise, the wall.
+
+        With `again` in the address, the last pair is asked again.
+        """
         voter, session = self.voter(request)
+        settings = store.settings(self.db)
+        if settings.pairs and settings.is_open(self.clock()):
+            if "again" in request.query_params:
+                question = pairs.last_question(self.db, voter)
+            else:
+                question = pairs.next_question(self.db, voter)
+            if question is not None:
+                return self.question(question, session)
+        return self.wall(voter, session)
+
+    def question(self, question: pairs.Question, session: tokens.PresentedToken) -> Response:
+        """Show a pair of artifacts, with a button for each."""
+        artifacts = store.artifacts(self.db)
+        return self.page(
+            "pair.html",
+            shown=[artifacts[id] for id in question.pair],
+            question=question,
+            key=tokens.form_key(session),
+        )
+
+    async def answer(self, request: Request) -> Response:
+        """Store the answer about a pair, and show the next pair once it is on the disk."""
+        voter, fields = await self.signed_form(request)
+        pair = [value for name, value in fields if name == "of"]
+        winner = "".join(value for name, value in fields if name == "winner")
+        try:
+            await self.writer.do(lambda db: pairs.cast(db, voter, pair, winner, now=self.clock()))
+        except ballots.NotAccepted as reason:
+            raise Refusal(409, str(reason)) from None
+        return RedirectResponse("/", 303)
+
+    async def signed_form(self, request: Request) -> tuple[store.Voter, list[tuple[str, str]]]:
+        """Return the voter and the fields of a form that was sent from one of our own pages."""
+        same_origin(request, self.origin)
+        voter, session = self.voter(request)
+        if not self.rates.take("ballots", voter.id, BALLOT_RATE):
+            raise Refusal(
+                429, "Too many changes at once. Your last ballot counts. Try again later."
+            )
+        fields = await form(request)
+        keys = [value for name, value in fields if name == "key"]
+        if keys != [tokens.form_key(session)]:
+            raise Refusal(403, "This form is too old, or it is not yours. Open the gallery again.")
+        return voter, fields
+
+    def wall(self, voter: store.Voter, session: tokens.PresentedToken) -> Response:
+        """Show all artifacts, in the voter's own order, with the voter's ballot."""
         settings = store.settings(self.db)
         artifacts = store.artifacts(self.db)
         cast_at, chosen = ballots.read_ballot(self.db, voter.id)
@@ -51,7 +101,7 @@ class Gallery(Front):
             artifact = artifacts[id]
             card = self.card(
                 one=artifact,
-                open=is_open,
+                open=is_open and settings.marks > 0,
                 own=artifact.team == voter.team,
                 chosen=id in chosen,
             )
@@ -63,6 +113,7 @@ class Gallery(Front):
             "wall.html",
             cards=cards,
             marks=settings.marks,
+            judged=len(pairs.read_answers(self.db, voter.id)),
             chosen=len(chosen),
             when=when,
             key=tokens.form_key(session),
@@ -70,16 +121,7 @@ class Gallery(Front):
 
     async def ballot(self, request: Request) -> Response:
         """Store a ballot, which replaces the earlier one, and answer once it is on the disk."""
-        same_origin(request, self.origin)
-        voter, session = self.voter(request)
-        if not self.rates.take("ballots", voter.id, BALLOT_RATE):
-            raise Refusal(
-                429, "Too many changes at once. Your last ballot counts. Try again later."
-            )
-        fields = await form(request)
-        keys = [value for name, value in fields if name == "key"]
-        if keys != [tokens.form_key(session)]:
-            raise Refusal(403, "This form is too old, or it is not yours. Open the gallery again.")
+        voter, fields = await self.signed_form(request)
         marked = [value for name, value in fields if name == "mark"]
         try:
             count = await self.writer.do(
@@ -175,6 +217,8 @@ class Gallery(Front):
         if settings.is_open(self.clock()):
             closes = store.format_time(settings.closes)
             raise Refusal(403, f"The results are shown after the vote has closed: {closes}.")
+        if settings.pairs:
+            return self.pair_results(artifacts, settings.pairs)
         cast = [ballot for ballot in ballots.every(self.db).values() if ballot]
         standings = ballots.standings(artifacts, cast)
         return self.page(
@@ -183,6 +227,21 @@ class Gallery(Front):
             cast=len(cast),
             voters=store.voters(self.db),
             method=ballots.METHOD.format(marks=settings.marks),
+        )
+
+    def pair_results(self, artifacts: Mapping[str, store.Artifact], asked: int) -> Response:
+        """Show the strengths of the artifacts, and how often the class agrees with metrics."""
+        ids, wins = pairs.count_wins(self.db)
+        standings = pairs.standings(ids, wins)
+        return self.page(
+            "pair_results.html",
+            rows=[(standing, artifacts[standing.artifact]) for standing in standings],
+            agreements=agreement.agreements(ids, wins, agreement.read_scores(self.db)),
+            answers=int(wins.sum()),
+            cast=pairs.count_voters(self.db),
+            voters=store.voters(self.db),
+            method=pairs.METHOD.format(pairs=asked),
+            agreement_method=agreement.METHOD,
         )
 
     async def static(self, request: Request) -> Response:
@@ -205,8 +264,9 @@ def application(gallery: Gallery) -> ASGIApp:
         await gallery.close()
 
     routes = [
-        Route("/", gallery.wall),
+        Route("/", gallery.home),
         Route("/ballot", gallery.ballot, methods=["POST"]),
+        Route("/pair", gallery.answer, methods=["POST"]),
         Route("/enter/{token}", gallery.link),
         Route("/enter/{token}", gallery.enter, methods=["POST"]),
         Route("/look/{id}", gallery.look),
