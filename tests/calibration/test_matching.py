@@ -53,7 +53,9 @@ def test_exact_matches_give_the_screen_back(gamma, black):
 
 
 @given(
-    fraction=st.floats(0.05, 0.95), gamma=st.floats(1.5, 3), black=st.floats(0, 0.3, exclude_max=True)
+    fraction=st.floats(0.05, 0.95),
+    gamma=st.floats(1.5, 3),
+    black=st.floats(0, 0.3, exclude_max=True),
 )
 def test_no_match_of_a_mixture_depends_on_the_black(fraction, gamma, black):
     """The rows may hold any fraction of white: the black adds the same light to both sides."""

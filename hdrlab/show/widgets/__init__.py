@@ -14,6 +14,7 @@ bilateral_kernel  drag the kernel of the bilateral filter along a line: `show.wi
 gradient_line  drag Fattal's attenuation of the gradients of a line: `show.widgets.gradients`
 gsolve_by_hand  drag pixels sideways until they lie on one curve: `show.widgets.gsolve`
 pixel_mean  press a pixel: what each photo claims, and the weighted mean: `show.widgets.pixel`
+screen_match  two sliders measure the gamma and the black of the screen: `show.widgets.screen`
 
 `play` and `tune` work with every algorithm: `states` is any iterable (the library's
 `<verb>_steps`, or your own generator), `f` is any function, and `draw` returns a uint8 image (H, W)
@@ -52,6 +53,7 @@ from hdrlab.show.widgets.gsolve import GsolveByHand, gsolve_by_hand
 from hdrlab.show.widgets.kernel import BilateralKernel, bilateral_kernel
 from hdrlab.show.widgets.lens import Brush, brush
 from hdrlab.show.widgets.pixel import PixelMean, pixel_mean
+from hdrlab.show.widgets.screen import ScreenMatch, screen_match
 from hdrlab.show.widgets.scripts import Widget, script
 from hdrlab.show.widgets.zones import ZoneScale, zone_scale
 
@@ -66,6 +68,7 @@ __all__ = [
     "GsolveByHand",
     "PixelMean",
     "Player",
+    "ScreenMatch",
     "Tuner",
     "Wiper",
     "ZoneScale",
@@ -79,6 +82,7 @@ __all__ = [
     "gsolve_by_hand",
     "pixel_mean",
     "play",
+    "screen_match",
     "tune",
     "wipe",
     "zone_scale",
