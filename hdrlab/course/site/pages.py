@@ -26,6 +26,12 @@ from hdrlab.show.pages.templates import render_page
 
 PAGES = Path(__file__).parent / "pages"
 STORY = PAGES / "story.ipynb"  # its last figure is on the first page, too
+# The guide with the figure that measures the reader's screen, which a notebook has, too
+SCREEN_GUIDE = "screen.md"
+SCREEN_NOTEBOOK = "25_a_picture_that_lights_up"
+SCREEN_PLACE = '<div class="screen-match"></div>'
+# how a notebook names a guide: where a notebook is run there are no guides, so it has no link
+NAMED_GUIDE = re.compile(r"(?<=guide )\*([^*]+)\*")
 # makes GitHub Pages serve files whose names begin with _; its text identifies a site of hdrlab
 MARKER_FILE = ".nojekyll"
 MARKER_TEXT = b"Made by hdrlab site, which replaces what is in this folder.\n"
@@ -151,12 +157,16 @@ def _build(
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
     headings = {name: title_of(notebook) for name, notebook in handouts.items()}
+    guides = [page for page in PAGES.rglob("*.md") if page.name != "index.md"]
+    guide_of_title = {page.read_text("utf-8").splitlines()[0][2:]: page.name for page in guides}
+    screen_figure = _find_screen_figure(notebooks)
     widgets = 0
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # some notebooks may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
             if edition and folder == "notebooks":
                 boxes.insert(notebook, name, set(sheets))
+            _link_guides(notebook, guide_of_title)
             texts[f"{folder}/{name}.ipynb"], count = _prepare_notebook(
                 notebook, name, known, html / WIDGETS, f"../{WIDGETS}"
             )
@@ -173,10 +183,10 @@ def _build(
         "edition": edition,
     }
     texts["index.md"] = render_page(PAGES, "index.md", **first)
-    guides = [page for page in PAGES.rglob("*.md") if page.name != "index.md"]
     for page in guides:
         name = page.relative_to(PAGES).as_posix()
         texts[name] = unlink_missing_notebooks(page.read_text("utf-8"), known)
+    texts[SCREEN_GUIDE] = texts[SCREEN_GUIDE].replace(SCREEN_PLACE, screen_figure)
     texts |= more
     files = {name: text.encode() for name, text in texts.items()}
     for image in [*PAGES.glob("cases/*.webp"), *PAGES.glob("teachers_sheets/*.svg")]:
@@ -189,6 +199,28 @@ def _build(
         _remove_other_files(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
     _publish(html, out)
     return Site(out / "index.html", len(texts), widgets + count, complaints)
+
+
+def _find_screen_figure(notebooks: Mapping[str, Any]) -> str:
+    """Return the HTML of the figure of SCREEN_NOTEBOOK that measures the screen, "" if there is none."""
+    if SCREEN_NOTEBOOK not in notebooks:
+        return ""
+    for _, widget in live.widgets(notebooks[SCREEN_NOTEBOOK], SCREEN_NOTEBOOK):
+        if {"gray", "dark"} <= widget.state.keys():
+            return widget.as_html(WIDGETS)
+    return ""
+
+
+def _link_guides(notebook: Any, guide_of_title: Mapping[str, str]) -> None:
+    """Make links of the titles of guides that a notebook names as "the guide *Title*"."""
+
+    def link(named: re.Match[str]) -> str:
+        guide = guide_of_title.get(" ".join(named[1].split()))
+        return f"[{named[1]}](../{guide})" if guide else named[0]
+
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            cell.source = NAMED_GUIDE.sub(link, cell.source)
 
 
 def _code(notebook: Any) -> list[str]:
