@@ -16,7 +16,7 @@ PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip", "sid
 PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "brush", "pixel_mean")}
 PICTURES |= {"widgets.exposure_window"}
 PICTURES |= {"widgets.bitmap_difference"}
-PICTURES |= {"widgets.zone_scale", "widgets.gain_screen"}
+PICTURES |= {"widgets.zone_scale", "widgets.gain_screen", "widgets.screen_match"}
 PICTURES |= {"widgets.gsolve_by_hand", "widgets.bilateral_kernel", "widgets.gradient_line"}
 # a cell is read at a glance; the limits leave room for one statement a line
 MAX_CELL_LINES = 14

@@ -151,7 +151,7 @@ def assert_it_fits(page, axe):
         assert violations == [], width
 
 
-@pytest.mark.parametrize("name", ["story", *(f"notebooks/{name}" for name in NOTEBOOKS)])
+@pytest.mark.parametrize("name", ["story", "screen", *(f"notebooks/{name}" for name in NOTEBOOKS)])
 def test_the_widgets_of_a_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(opened, axe, name):
     page = opened(name)
     places = page.locator(".live").all()
@@ -186,7 +186,15 @@ def test_a_teachers_sheet_prints_on_one_page(opened, name):
 
 
 @pytest.mark.parametrize(
-    "name", ["index", "story", "notebooks/04_response_gsolve", "verdicts", "reference/tonemap.chiu"]
+    "name",
+    [
+        "index",
+        "story",
+        "screen",
+        "notebooks/04_response_gsolve",
+        "verdicts",
+        "reference/tonemap.chiu",
+    ],
 )
 def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wrong(
     opened, axe, name

@@ -60,7 +60,7 @@ def notebook(path, title, *cells):
     """Write a notebook with a title, a formula, a link to another notebook, and cells of code."""
     words = (
         f"# {title}\n\nRun the cells from the top. So $g(Z) = \\ln E$, see [one](01_one.ipynb) and "
-        "[three](03_three.ipynb).\n\n$$x^2$$"
+        "[three](03_three.ipynb). Read the guide *Installing*, and the guide *Unknown*.\n\n$$x^2$$"
     )
     made = nbformat.v4.new_notebook(
         metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}}
@@ -309,6 +309,17 @@ def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):
     text = (made[1] / "notebooks" / "02_two.html").read_text("utf-8")
     assert 'href="01_one.html"' in text
     assert "and three." in text and "03_three" not in text
+
+
+def test_a_guide_that_a_notebook_names_is_a_link_on_its_page(made):
+    text = (made[1] / "notebooks" / "02_two.html").read_text("utf-8")
+    assert 'href="../installing.html"' in text
+    assert "the guide <em>Unknown</em>" in text
+
+
+def test_the_guide_to_the_screen_stays_readable_without_the_notebook_that_has_its_figure(made):
+    text = (made[1] / "screen.html").read_text("utf-8")
+    assert "screen-match" not in text and "The same figure is in notebook 25." in text
 
 
 def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(made, page_addresses):

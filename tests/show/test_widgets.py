@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from support.half_floats import decode_half_floats
 
 from hdrlab import errors, scenes
+from hdrlab.calibration import matching
 from hdrlab.capture.sensor import Sensor
 from hdrlab.io import web
 from hdrlab.show import plots, widgets
@@ -100,6 +101,7 @@ def test_scripts_of_widgets_load_nothing_from_elsewhere():
     assert len(state["frames"]) == 2 and state["index"] == 0
     kinds = [widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush]
     kinds += [widgets.BilateralKernel, widgets.GradientLine]
+    kinds += [widgets.ScreenMatch]
     kinds += [widgets.GainScreen, widgets.PixelMean, widgets.ExposureWindow, widgets.ZoneScale]
     for widget in kinds:
         script = widget._esm
@@ -936,3 +938,29 @@ def test_gsolve_by_hand_falls_back_to_a_plot_with_alt_text():
     images = np.stack([ramp, 4 * ramp]).astype(np.uint8)
     html, text = widgets.gsolve_by_hand(images, [1, 4], alt="A ramp of gray").fallback()
     assert "<img" in html and 'alt="A ramp of gray"' in html and text == "A ramp of gray"
+
+
+def test_a_screen_match_measures_the_screen_of_its_sliders():
+    figure = widgets.screen_match(scenes.chapel((20, 30)), alt="A chapel")
+    figure.set_state({"gray": 186 / 255, "dark": 8 / 255})  # as the browser's message does
+    assert figure.screen == matching.measure(186 / 255, 8 / 255)
+
+
+def test_a_screen_match_falls_back_to_a_picture_with_alt_text():
+    still = widgets.screen_match(scenes.chapel((20, 30)), alt="A chapel").still()
+    assert still.alts == ("A chapel",) and still.captions == ("for any screen",)
+    assert iio.imread(io.BytesIO(still.frames[0])).shape == (20, 30, 3)
+
+
+@pytest.mark.parametrize(
+    ("E", "arguments", "named"),
+    [
+        (np.zeros((4, 6)), {"alt": "Night"}, "with light"),
+        (np.ones((4, 6)), {"alt": "Gray", "gray": 1.0}, "gray"),
+        (np.ones((4, 6)), {"alt": "Gray", "dark": 0.0}, "dark"),
+        (np.ones((4, 6)), {"alt": ""}, "alt text"),
+    ],
+)
+def test_a_screen_match_rejects_what_it_cannot_show(E, arguments, named):
+    with pytest.raises(errors.InputError, match=named):
+        widgets.screen_match(E, **arguments)

@@ -181,6 +181,7 @@ OPEN_TEXT = {
         "1 cd/m²": "the luminance of that step",
         "3 %": "the smallest visible step at 0.01 cd/m², a textbook figure",
         "8 bits": "the depth of a gain map",
+        "2 %": "the threshold of the eye at 2 cd/m², DICOM PS3.14: see test_matching.py",
         "21496": "a standard",
         "22028": "a standard",
     },

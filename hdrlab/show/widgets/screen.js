@@ -174,7 +174,7 @@ async function render({ model, el }) {
   const darkField = addField({
     trait: "dark",
     name: "dark",
-    task: "2. Make the square as dark as you can still see it. It is in the middle.",
+    task: "2. Darken the square in the middle until you only just see it.",
     codes: DARK_CODES,
     around: () => 0,
   });
