@@ -155,6 +155,14 @@ def test_the_fields_fill_the_screen_and_come_back(opened):
     assert page.locator("canvas.hdrlab-photo").first.is_visible()
 
 
+def test_a_square_that_never_disappears_gives_a_bound(opened):
+    page = opened()
+    set_slider(page, "gray", 58)
+    set_slider(page, "dark", 0)
+    status = page.get_by_role("status").inner_text().replace("\xa0", " ")
+    assert "Black at most 0.024 % of white" in status and "at least 12.0 stops." in status
+
+
 @pytest.mark.parametrize("theme", ["true", "false"])
 def test_axe_finds_nothing_by_day_and_by_night(opened, axe, theme):
     page = opened()

@@ -239,15 +239,19 @@ async function render({ model, el }) {
     const fewest = stopsOf(dark, gamma, smallest);
     const most = stopsOf(dark, gamma, largest);
     const error = gamma * (model.get("match_error") / Math.LN2);
-    const black = 100 * 2 ** -stops;
-    const isLowest = MAX_CODE * dark <= DARK_CODES[0] + 1e-6;
+    const candidates = model.get("stops").slice(0, comparison);
+    // The darkest patch of the slider, and the darkest black that matters, are only a bound.
+    const maxStops = candidates[comparison - 1];
+    const isBound = MAX_CODE * dark <= DARK_CODES[0] + 1e-6 || stops > maxStops;
+    const shownStops = Math.min(stops, maxStops);
+    const blackText = `${Number((100 * 2 ** -shownStops).toPrecision(2))}\u00a0% of white`;
+    const range = `${fewest.toFixed(1)} to ${most.toFixed(1)}`;
     showStatus(
       `Gamma ${gamma.toFixed(2)} ± ${error.toFixed(2)}. ` +
-        `Black ${isLowest ? "at most " : ""}${Number(black.toPrecision(2))}\u00a0% of white, ` +
-        `with the light of the room: ${isLowest ? "at least " : ""}${stops.toFixed(1)} stops ` +
-        `(${fewest.toFixed(1)} to ${most.toFixed(1)}).`,
+        `Black ${isBound ? "at most " : ""}${blackText}, with the light of the room: ` +
+        `${isBound ? "at least " : ""}${shownStops.toFixed(1)} stops` +
+        `${isBound ? "" : ` (${range})`}.`,
     );
-    const candidates = model.get("stops").slice(0, comparison);
     const k = indexOfLeast(candidates.map((candidate) => Math.abs(candidate - stops)));
     paintScene(after.canvas, scene, wardCurve(model, k), pixelValuesOf(gamma));
     const settings = `ward with white ${Math.round(2 ** candidates[k])}, gamma ${gamma.toFixed(2)}`;
