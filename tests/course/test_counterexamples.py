@@ -215,7 +215,7 @@ def test_a_function_that_raises_on_small_inputs_is_not_blamed_for_that():
     text = CUT.replace("    Y =", "    if len(Y) < 6: raise ValueError('too small')\n    Y =")
     example = find("shrink", text, "test_a_level_is_the_rounded_mean_of_four_pixels")
     assert "raised" not in example.yours
-    assert len(snippets.Snippet(example.inputs, "shrink(Y)").arguments()[0][0]) == 6
+    assert len(snippets.Snippet(example.inputs, "shrink(small_Y)").arguments()[0][0]) == 6
 
 
 def test_a_check_that_failed_by_an_exception_shows_a_small_input_that_raises_it():
@@ -289,7 +289,7 @@ def test_an_input_shrinks_to_the_one_value_that_matters():
 
 def test_small_inputs_may_end_with_keyword_arguments():
     example = find("snr", source_of("snr_signal_alone"), SNR_CHECK)
-    assert example.call == "snr(g, least=0.01, span=1)"
+    assert example.call == "snr(small_g, least=0.01, span=1)"
     assert pasted(example, function_in("snr", source_of("snr_signal_alone"))) == example.yours
 
 

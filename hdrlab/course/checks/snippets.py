@@ -17,6 +17,8 @@ MAX_SHOWN_NUMBERS = 12
 MIN_SPARSE_VALUES = 8
 MAX_SPARSE_FRACTION = 0.25
 MAX_TEXT_CHARACTERS = 80
+# so that the variables of a notebook keep their values when the code is pasted into a cell
+VARIABLE_PREFIX = "small_"
 # numbers of a type that np.array gives to a list by itself
 PLAIN_TYPES = ("float64", "int64", "bool")
 
@@ -68,22 +70,22 @@ def write(
     name : str
         The name of the function in the code.
     function : function
-        The names of its parameters are those of the variables.
+        The names of the variables are made from those of its parameters.
     args, kwargs : the arguments
 
     Examples
     --------
     >>> print(write("mean", lambda Y: Y.mean(), [np.array([[1, 2]], np.uint8)], {}).text)
-    Y = np.array([[1, 2]], dtype=np.uint8)
-    mean(Y)
+    small_Y = np.array([[1, 2]], dtype=np.uint8)
+    mean(small_Y)
     """
     names = _parameter_names(function, len(args))
     inputs: list[str] = []
     written: list[str] = []
     for parameter, value in [*zip(names, args, strict=True), *kwargs.items()]:
         if isinstance(value, np.ndarray) and value.ndim:
-            inputs += _write_assignments(parameter, value)
-            text = parameter
+            text = VARIABLE_PREFIX + parameter
+            inputs += _write_assignments(text, value)
         else:
             text = write_value(value)
         written.append(text if len(written) < len(args) else f"{parameter}={text}")
