@@ -131,3 +131,25 @@ def test_a_plot_with_dots_is_mostly_paper(driver, figure, name):
         height = plot.rect["height"]
         shown = np.asarray(page.crop((left, top, left + width, top + height)))
         assert np.mean(shown > 200) > 0.7
+
+
+def test_the_fields_that_are_matched_have_a_pixel_for_each_pixel_of_the_screen(driver, tmp_path):
+    (tmp_path / "figure.html").write_text(
+        widget_page(widgets.screen_match(WEDGE, alt="A")), "utf-8"
+    )
+    driver.get((tmp_path / "figure.html").as_uri())
+    wait_until(driver, lambda: read_status(driver) != "")
+    sizes = driver.execute_script(
+        """return [...document.querySelectorAll(".hdrlab-field")].map((field) => {
+            const box = field.getBoundingClientRect();
+            const expected = [box.width * devicePixelRatio, box.height * devicePixelRatio];
+            return [field.width, field.height, ...expected];
+        });"""
+    )
+    assert len(sizes) == 2
+    for width, height, *expected in sizes:
+        assert [width, height] == pytest.approx(expected, abs=1)
+    for slider in driver.find_elements("css selector", "input[type=range]"):
+        driver.execute_script(FOCUS, slider)
+        ActionChains(driver).send_keys(Keys.ARROW_LEFT).perform()
+    wait_until(driver, lambda: read_status(driver).startswith("Gamma"))
