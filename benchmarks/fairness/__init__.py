@@ -40,6 +40,7 @@ from hdrlab.course.grading.results import Check, Outcome
 from hdrlab.course.limits import CALL_TIMEOUT_SECONDS
 from hdrlab.course.plan import Homework
 from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.session import Unavailable
 from hdrlab.course.source_code.names import imported_numpy_modules
 
 HERE = Path(__file__).parent
@@ -129,6 +130,8 @@ def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
         ended = Check(task.id, name, name, Fraction(), points, "holds")
         try:
             test(**{check: arguments[check] for check in inspect.signature(test).parameters})
+        except Unavailable:  # the machine failed, not the answer
+            raise
         except Exception as error:  # whatever an answer leads to costs that promise, and no other
             kind = error.kind if isinstance(error, NoAnswer) else ""
             outcome: Outcome = "no answer" if kind else "fails"

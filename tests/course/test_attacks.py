@@ -110,8 +110,8 @@ def points(subject, student="a"):
         subject.fresh()
         x = np.random.default_rng(plan.seed("a secret", student, check)).random((4, 4))
         try:
-            came = subject.double(x)
-            same(came, 2 * x, 1e-9)
+            answer = subject.double(x)
+            same(answer, 2 * x, 1e-9)
             held += 1
         except (NoAnswer, AnswerMismatch) as error:
             outcomes.append(str(error))

@@ -95,10 +95,10 @@ def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     course = GradingContext(
         ROSTER, HOMEWORK, GradingOptions(), Late(1, 2.0), [LateRecord("hw1", 1, ("b3",), 5.0)]
     )
-    came = {
+    handins = {
         "t": Submission("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")
     }
-    first, second, third = marks.gradebook_rows(course, came, {"t": 8.0}, {"b3": "refused"})
+    first, second, third = marks.gradebook_rows(course, handins, {"t": 8.0}, {"b3": "refused"})
     assert (first.student, first.name, first.team) == ("b1", "Ada", "t")
     assert first.received == "2026-03-02T13:00+00:00"
     assert (first.late, first.excused, first.left) == (2, 1, 0)
@@ -108,7 +108,7 @@ def test_a_gradebook_row_has_the_time_received_the_late_days_and_the_score():
     assert (third.student, third.received, third.score) == ("b3", "", 0)
     assert third.note == "not handed in; refused"
     assert dict(zip(marks.COLUMNS, first.cells, strict=True))["grace left"] == 0
-    ungraded = marks.gradebook_rows(course, came, {})[0]
+    ungraded = marks.gradebook_rows(course, handins, {})[0]
     assert (ungraded.work, ungraded.penalty, ungraded.note) == (0, 0, "not graded; a note")
     _, rows = moodle.gradebook([first], ROSTER, HOMEWORK)
     assert rows == [["b1", "b1", "a@x", 6.0]]

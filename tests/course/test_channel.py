@@ -47,9 +47,9 @@ def passed(value):
     ours, theirs = socket.socketpair()
     with ours, theirs:
         channel.send(ours, "word", value, 7)
-        kind, call, came = channel.receive(theirs, time.monotonic() + 10)
+        kind, call, received = channel.receive(theirs, time.monotonic() + 10)
     assert (kind, call) == ("word", 7)
-    return came
+    return received
 
 
 @pytest.mark.grading
@@ -60,9 +60,9 @@ def test_plain_values_survive_the_channel(value):
 
 @given(ARRAYS)
 def test_arrays_keep_dtype_shape_and_bits(array):
-    came = passed({"array": [array]})["array"][0]
-    assert came.dtype == array.dtype and came.shape == array.shape
-    assert came.tobytes() == array.tobytes()
+    received = passed({"array": [array]})["array"][0]
+    assert received.dtype == array.dtype and received.shape == array.shape
+    assert received.tobytes() == array.tobytes()
 
 
 def test_arrays_of_any_memory_layout_survive_the_channel():
@@ -87,9 +87,9 @@ def test_an_array_larger_than_the_socket_buffer_arrives(pair):
     array = np.random.default_rng(0).random(1 << 20)
     sender = threading.Thread(target=channel.send, args=(ours, "word", array))
     sender.start()
-    _, _, came = channel.receive(theirs, time.monotonic() + 30)
+    _, _, received = channel.receive(theirs, time.monotonic() + 30)
     sender.join()
-    np.testing.assert_array_equal(came, array)
+    np.testing.assert_array_equal(received, array)
 
 
 @pytest.mark.parametrize(
@@ -214,8 +214,8 @@ def test_arbitrary_bytes_are_refused_without_any_other_error(noise, cut):
 def test_any_nonzero_byte_of_a_boolean_array_becomes_true(pair):
     ours, theirs = pair
     ours.sendall(frame(ONE, [label(dtype="bool", shape=(3,), nbytes=3)], b"\x00\x01\xff"))
-    _, _, came = channel.receive(theirs)
-    assert came.tolist() == [False, True, True] and came.sum() == 2
+    _, _, received = channel.receive(theirs)
+    assert received.tolist() == [False, True, True] and received.sum() == 2
 
 
 def test_a_frame_that_arrives_too_slowly_times_out(pair):

@@ -62,7 +62,7 @@ def test_a_passed_check_is_reported_with_its_distinct_notes_and_printed_output(c
         "ended": "/checks/test_hat.py::test_a_promise",
         "outcome": "holds",
         "message": "b\na\n" + "n" * 1496,
-        "said": "<f> " + "s" * (4000 - 14),
+        "printed": "<f> " + "s" * (4000 - 14),
     }
     assert not checking.failed
 
@@ -103,7 +103,7 @@ def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, mess
 
 
 @pytest.mark.parametrize(
-    ("words", "came", "message"),
+    ("words", "answer", "message"),
     [
         ("w: no", np.ones(3), "w: no\nYours: shape (3,)"),
         ("n" * 1600, np.ones(3), "n" * 1500 + "\nYours"),
@@ -111,12 +111,12 @@ def test_a_failed_check_is_reported_with_its_message(raised, outcome, kind, mess
     ],
 )
 def test_a_mismatch_message_describes_the_array_that_the_student_returned(
-    words, came, message, checking
+    words, answer, message, checking
 ):
-    end_check(checking, make_item(), AnswerMismatch(words, came=came))
+    end_check(checking, make_item(), AnswerMismatch(words, answer=answer))
     (line,) = checking.lines()
     assert line["message"].startswith(message)
-    assert ("Yours" in line["message"]) is (came.ndim > 0)
+    assert ("Yours" in line["message"]) is (answer.ndim > 0)
 
 
 @pytest.mark.parametrize(
@@ -134,8 +134,8 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
 ):
     monkeypatch.setattr(plugin, "MAX_DRAWN_VALUES", 4)
     truth = np.zeros(shape)
-    came = np.ones(shape, np.float32)
-    error = AnswerMismatch("no", expected=truth, came=came, kind=kind)
+    answer = np.ones(shape, np.float32)
+    error = AnswerMismatch("no", expected=truth, answer=answer, kind=kind)
     end_check(checking, make_item(), error)
     checking.job["draw"] = False
     end_check(checking, make_item(), error)
@@ -143,12 +143,17 @@ def test_a_mismatch_that_can_be_drawn_includes_both_arrays_as_base64(
     assert second is None and (first is not None) is drawn
     if drawn:
         texts = [
-            base64.b64encode(array.astype("<f8").tobytes()).decode() for array in (truth, came)
+            base64.b64encode(array.astype("<f8").tobytes()).decode() for array in (truth, answer)
         ]
-        assert first == {"kind": kind, "shape": list(shape), "expected": texts[0], "came": texts[1]}
+        assert first == {
+            "kind": kind,
+            "shape": list(shape),
+            "expected": texts[0],
+            "answer": texts[1],
+        }
 
 
-@pytest.mark.parametrize("answers", ["expected", "came"])
+@pytest.mark.parametrize("answers", ["expected", "answer"])
 def test_nothing_is_drawn_unless_both_answers_are_known(answers, checking):
     end_check(checking, make_item(), AnswerMismatch("no", kind="curve", **{answers: np.zeros(3)}))
     (line,) = checking.lines()

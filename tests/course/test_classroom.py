@@ -82,10 +82,10 @@ def test_late_days_are_read_back_from_a_gradebook(tmp_path):
 def test_an_id_with_an_apostrophe_keeps_its_own_late_days(tmp_path):
     students = tuple(Student(id, id, id) for id in ("b1", "'b1", "=b1", "'=b1"))
     course = replace(COURSE, roster=Roster(students))
-    came = {
+    handins = {
         student.id: handin(student.id, (student.id,), days) for days, student in enumerate(students)
     }
-    rows = marks.gradebook_rows(course, came, {})
+    rows = marks.gradebook_rows(course, handins, {})
     rows = [replace(row, note="") for row in rows]
     csv_tables.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, [row.cells for row in rows])
     read = marks.read([tmp_path / "gradebook.csv"])
@@ -121,8 +121,8 @@ def test_the_what_if_table_shows_the_score_for_each_number_of_late_days():
         100,
         97,
     ]
-    came = marks.gradebook_rows(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
-    scores = {row.student: row.score for row in came}
+    rows = marks.gradebook_rows(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
+    scores = {row.student: row.score for row in rows}
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
 
 

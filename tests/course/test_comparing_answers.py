@@ -27,8 +27,8 @@ def test_require_raises_a_mismatch_with_its_message_and_details():
     compare.require(True, "it holds")
     compare.require([0], "something is there")
     with pytest.raises(AnswerMismatch, match="^it does not hold$") as raised:
-        compare.require(0, "it does not hold", came=np.ones(2))
-    assert (raised.value.kind, raised.value.expected, raised.value.came.tolist()) == (
+        compare.require(0, "it does not hold", answer=np.ones(2))
+    assert (raised.value.kind, raised.value.expected, raised.value.answer.tolist()) == (
         "values",
         None,
         [1, 1],
@@ -36,7 +36,7 @@ def test_require_raises_a_mismatch_with_its_message_and_details():
 
 
 @pytest.mark.parametrize(
-    ("came", "message"),
+    ("answer", "message"),
     [
         (None, "the answer: expected numbers, got None; return the result"),
         ("abc", "the answer: expected one array of numbers, got str of 3"),
@@ -51,28 +51,28 @@ def test_require_raises_a_mismatch_with_its_message_and_details():
         (np.array(["a"]), "the answer: expected real numbers, got dtype <U1"),
     ],
 )
-def test_an_answer_that_is_not_an_array_of_real_numbers_is_refused(came, message, notes):
-    assert refused(numbers, came) == message and not notes
-    assert refused(numbers, came, what="w") == message.replace("the answer", "w", 1)
+def test_an_answer_that_is_not_an_array_of_real_numbers_is_refused(answer, message, notes):
+    assert refused(numbers, answer) == message and not notes
+    assert refused(numbers, answer, what="w") == message.replace("the answer", "w", 1)
 
 
 @pytest.mark.parametrize(
-    "came", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)]
+    "answer", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)]
 )
-def test_real_numbers_of_any_type_are_accepted(came, notes):
-    assert np.array_equal(numbers(came), came) and not notes
+def test_real_numbers_of_any_type_are_accepted(answer, notes):
+    assert np.array_equal(numbers(answer), answer) and not notes
 
 
 @pytest.mark.parametrize(
-    ("came", "message"),
+    ("answer", "message"),
     [
         ([1, 2.5], ("list of 2", "(2,)")),
         (((1, 2), (3, 4), (5, 6)), ("tuple of 3", "(3, 2)")),
         ([[True]], ("list of 1", "(1, 1)")),
     ],
 )
-def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(came, message, notes):
-    assert np.array_equal(numbers(came, what="w"), np.array(came))
+def test_a_list_of_numbers_is_accepted_as_an_array_with_a_note(answer, message, notes):
+    assert np.array_equal(numbers(answer, what="w"), np.array(answer))
     (note,) = notes
     assert note.startswith("w: ") and all(part in note for part in message)
 
@@ -120,8 +120,8 @@ def test_an_array_of_the_right_shape_is_returned_without_a_note(notes):
 
 def test_the_expected_number_of_parts_is_required():
     assert parts((1, 2, 3), 2) == (1, 2) and parts([1, 2], 2) == (1, 2)
-    for came, named in (((1,), "tuple of 1"), ("abc", "str of 3"), (None, "None")):
-        message = refused(parts, came, 2)
+    for answer, named in (((1,), "tuple of 1"), ("abc", "str of 3"), (None, "None")):
+        message = refused(parts, answer, 2)
         assert "2 parts" in message and named in message
     message = refused(parts, np.ones(3), 2, what="w")
     assert message.startswith("w: ") and "2 parts" in message and "array" in message
@@ -136,18 +136,18 @@ def test_an_array_with_a_row_for_each_part_is_accepted_with_a_note(notes):
 
 def test_at_least_one_state_is_required():
     assert states((1, 2)) == [1, 2] and states([0]) == [0]
-    for came, named in (
+    for answer, named in (
         ([], "list of 0"),
         ("abc", "str of 3"),
         (np.ones(3), "one array"),
         (7, "one array"),
     ):
-        message = refused(states, came)
+        message = refused(states, answer)
         assert "states" in message and named in message
 
 
 @pytest.mark.parametrize(
-    ("came", "expected", "tolerance", "message"),
+    ("answer", "expected", "tolerance", "message"),
     [
         (1.5, 1, 0.5, ""),
         (1.5, 1, 0.25, "expected 1, got 1.5; the difference may be 0.25"),
@@ -191,17 +191,17 @@ def test_at_least_one_state_is_required():
     ],
 )
 def test_values_within_the_tolerance_pass_and_the_largest_error_is_reported(
-    came, expected, tolerance, message
+    answer, expected, tolerance, message
 ):
-    came = np.array(came)
+    answer = np.array(answer)
     if message:
-        assert refused(same, came, expected, tolerance, what="w") == f"w: {message}"
+        assert refused(same, answer, expected, tolerance, what="w") == f"w: {message}"
     else:
-        assert same(came, expected, tolerance) is came
+        assert same(answer, expected, tolerance) is answer
 
 
 @pytest.mark.parametrize(
-    ("where", "came", "message"),
+    ("where", "answer", "message"),
     [
         ([True, False], [1, 7], ""),
         ([True, False], [1, np.nan], ""),
@@ -215,11 +215,11 @@ def test_values_within_the_tolerance_pass_and_the_largest_error_is_reported(
         ),
     ],
 )
-def test_values_outside_the_mask_are_ignored(where, came, message):
+def test_values_outside_the_mask_are_ignored(where, answer, message):
     if message:
-        assert refused(same, np.array(came), [1, 2], 0, where=where) == f"the answer: {message}"
+        assert refused(same, np.array(answer), [1, 2], 0, where=where) == f"the answer: {message}"
     else:
-        assert same(np.array(came), [1, 2], 0, where=where).shape == (2,)
+        assert same(np.array(answer), [1, 2], 0, where=where).shape == (2,)
 
 
 def test_an_expected_nan_outside_the_mask_is_ignored():
@@ -244,8 +244,8 @@ def test_a_mismatch_keeps_both_arrays_and_how_to_draw_them(shape, named, kind):
     with pytest.raises(AnswerMismatch) as raised:
         same(np.ones(shape), np.zeros(shape), 0.5, **named)
     assert raised.value.kind == kind
-    assert not raised.value.expected.any() and raised.value.came.all()
-    assert raised.value.expected.shape == raised.value.came.shape == shape
+    assert not raised.value.expected.any() and raised.value.answer.all()
+    assert raised.value.expected.shape == raised.value.answer.shape == shape
 
 
 def test_finite_requires_the_shape_and_finite_numbers():
@@ -273,7 +273,7 @@ def test_answers_of_trusted_code_have_the_types_that_the_channel_gives():
 
 
 @pytest.mark.parametrize(
-    ("came", "named"),
+    ("answer", "named"),
     [
         (None, "nothing (None)"),
         (np.float32(1), "one array"),
@@ -281,8 +281,8 @@ def test_answers_of_trusted_code_have_the_types_that_the_channel_gives():
         ({}, "something else"),
     ],
 )
-def test_the_message_names_the_type_of_the_answer(came, named):
-    assert refused(parts, came, 1).endswith(f"got {named}")
+def test_the_message_names_the_type_of_the_answer(answer, named):
+    assert refused(parts, answer, 1).endswith(f"got {named}")
 
 
 def test_points_marks_a_check_with_its_points_and_optional_requirement():

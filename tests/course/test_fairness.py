@@ -42,22 +42,22 @@ def test_a_correct_solution_written_from_the_assignment_passes_every_check(path)
 
 
 @pytest.mark.parametrize(
-    ("came", "noted"),
+    ("answer", "noted"),
     [
         ([0.0, 1.0, 0.0], "w: list of 3 was taken for an array of shape (3,)"),
         ([[0.0], [1.0], [0.0]], "w: shape (3, 1) was taken for (3,)"),
     ],
 )
-def test_numbers_in_another_form_are_accepted_and_noted(came, noted):
+def test_numbers_in_another_form_are_accepted_and_noted(answer, noted):
     compare.notes.clear()
-    assert compare.same(came, [0, 1, 0], 0, what="w").shape == (3,)
+    assert compare.same(answer, [0, 1, 0], 0, what="w").shape == (3,)
     assert noted in compare.notes
 
 
-@pytest.mark.parametrize("came", [[1.0, [2.0]], [1.0, "2"], [[1.0, 2.0, 3.0, 4.0]], []])
-def test_other_lists_are_not_accepted(came):
+@pytest.mark.parametrize("answer", [[1.0, [2.0]], [1.0, "2"], [[1.0, 2.0, 3.0, 4.0]], []])
+def test_other_lists_are_not_accepted(answer):
     with pytest.raises(compare.AnswerMismatch):
-        compare.same(came, [1, 2], 0)
+        compare.same(answer, [1, 2], 0)
 
 
 def test_the_fairness_benchmark_gives_the_same_points_and_mistake_as_check():

@@ -44,13 +44,13 @@ def find(tmp_path):
     return find
 
 
-def came(scan):
+def received_times(scan):
     return {team: submission.received for team, submission in scan.submissions.items()}
 
 
 def test_a_file_in_another_students_folder_does_not_get_a_received_time_by_its_name(find):
     scan = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
-    assert came(scan) == {"b05": NOON, "b06": LATE}
+    assert received_times(scan) == {"b05": NOON, "b06": LATE}
     assert any("b06/b05_hw2.ipynb" in note and "not in the table" in note for note in scan.notes)
     assert "not in the table" in scan.submissions["b06"].note and not scan.submissions["b05"].note
 
@@ -58,7 +58,7 @@ def test_a_file_in_another_students_folder_does_not_get_a_received_time_by_its_n
 @pytest.mark.parametrize("name", ["b05/hw2.ipynb", "./b05/hw2.ipynb", "b05\\hw2.ipynb"])
 def test_received_times_are_found_with_one_folder_per_student(find, name):
     scan = find({"b05/hw2.ipynb": "x", "b06/hw2.ipynb": "y"}, {name: NOON, "b06/hw2.ipynb": NOON})
-    assert came(scan) == {"b05": NOON, "b06": NOON} and scan.notes == ()
+    assert received_times(scan) == {"b05": NOON, "b06": NOON} and scan.notes == ()
 
 
 @pytest.mark.parametrize(
@@ -66,13 +66,13 @@ def test_received_times_are_found_with_one_folder_per_student(find, name):
 )
 def test_a_file_name_cannot_claim_the_received_time_of_another_student(find, theirs):
     scan = find({f"b06/{theirs}": "y"}, {theirs: NOON})
-    assert came(scan) == {"b06": LATE}
+    assert received_times(scan) == {"b06": LATE}
     assert any("there is no such file" in note for note in scan.notes)
 
 
 def test_a_received_time_without_a_folder_applies_to_the_file_in_the_folder_of_its_owner(find):
     scan = find({"b05/b05_hw2.ipynb": "x"}, {"b05_hw2.ipynb": NOON})
-    assert came(scan) == {"b05": NOON} and scan.notes == ()
+    assert received_times(scan) == {"b05": NOON} and scan.notes == ()
 
 
 def test_received_times_without_a_file_and_files_without_a_time_are_noted(find):
@@ -94,7 +94,7 @@ def test_two_received_times_for_one_file_are_an_error(find):
 def test_file_names_match_in_any_unicode_normalization(find):
     roster = Roster((Student("zo\u00e9", "Z", "zo\u00e9"),))
     scan = find({"zoe\u0301_hw2.py": "x"}, {"zo\u00e9_hw2.py": NOON}, roster)
-    assert came(scan) == {"zo\u00e9": NOON}
+    assert received_times(scan) == {"zo\u00e9": NOON}
 
 
 @pytest.mark.parametrize("name", ["b05", "B05", "\uff22\uff10\uff15"])

@@ -188,7 +188,7 @@ def test_printed_text_is_escaped_in_every_format(name, strict, tmp_path):
             message = str(error)
         assert shown(message) and shown(subject.printed)
         paths = gradebook.write_results(
-            tmp_path, result(message=message, said=subject.printed, kind="raised")
+            tmp_path, result(message=message, printed=subject.printed, kind="raised")
         )
     texts = {path.name: path.read_bytes().decode() for path in paths}
     assert "<script>alert" not in texts["feedback.html"]

@@ -61,9 +61,9 @@ def test_an_inlined_mistake_gives_the_same_answers_as_its_function(mistake, tmp_
         mistake.name, mistake.task, solutions.texts(HOMEWORKS["hw2"], [mistake.name]), tmp_path
     )
     for arguments, named in small(mistake.task):
-        came = misconceptions.call_quietly(wrong, arguments, named)
+        inlined_answer = misconceptions.call_quietly(wrong, arguments, named)
         filed = misconceptions.call_quietly(mistake.function, arguments, named)
-        assert filed is not None and misconceptions.difference(came, filed) == 0
+        assert filed is not None and misconceptions.difference(inlined_answer, filed) == 0
 
 
 @pytest.mark.parametrize("homework", HOMEWORKS.values(), ids=HOMEWORKS)

@@ -144,11 +144,11 @@ FACTORS = [(2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 2e-4), (5.1e7, 2e-4)]
 @pytest.mark.parametrize("name", ["a scene", "a scene with zeros"])
 def test_an_exposure_may_move_a_picture_by_as_much_as_its_factor_allows(factor, allowed, name):
     L = laws.RADIANCES[name] * np.float32(factor)
-    came = []
+    maxima = []
 
     def moved(error):
         def tonemap(radiance):
-            came.append(radiance.max())
+            maxima.append(radiance.max())
             return np.full(radiance.shape, error if np.array_equal(radiance, L) else 0.0)
 
         return tonemap
@@ -157,7 +157,7 @@ def test_an_exposure_may_move_a_picture_by_as_much_as_its_factor_allows(factor, 
     with pytest.raises(AssertionError):
         laws.exposure(moved(1.01 * allowed))
     whole = laws.scene().max()
-    assert came[:10] == [whole, whole, *(whole * np.float32(step) for step, _ in FACTORS * 2)]
+    assert maxima[:10] == [whole, whole, *(whole * np.float32(step) for step, _ in FACTORS * 2)]
 
 
 # A random response, and the distance of a curve from it

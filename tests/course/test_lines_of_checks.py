@@ -41,7 +41,7 @@ def ending(name, outcome="holds", task="hat", *, case="", message="", printed=""
         "ended": f"test_{task}.py::{name}{case}",
         "outcome": outcome,
         "message": message,
-        "said": printed,
+        "printed": printed,
     }
     return line | more
 
@@ -190,13 +190,16 @@ def test_the_outcome_of_a_check_is_the_one_that_was_written(run_checks):
         False,
         Drawing(),
     )
-    assert check_result.message == "m" * 2000 and check_result.said == "s" * 2000
+    assert check_result.message == "m" * 2000 and check_result.printed == "s" * 2000
 
 
 def test_a_check_that_never_ran_has_no_answer(run_checks):
     (result,) = run_checks(check("hold"))
     (check_result,) = result.checks
-    assert (check_result.outcome, check_result.said) == ("no answer", "") and check_result.message
+    assert (check_result.outcome, check_result.printed) == (
+        "no answer",
+        "",
+    ) and check_result.message
     assert (check_result.points, check_result.kind) == (0, "")
 
 
@@ -294,10 +297,10 @@ def test_a_check_that_needs_another_one_is_passed_on_to_the_scoring(run_checks):
 
 def drawn(kind, shape, wrong):
     truth = np.linspace(0, 1, int(np.prod(shape))).reshape(shape)
-    came = truth.copy()
-    came.flat[wrong] += 0.5
-    texts = [base64.b64encode(array.astype("<f8").tobytes()).decode() for array in (truth, came)]
-    return {"kind": kind, "shape": shape, "expected": texts[0], "came": texts[1]}
+    answer = truth.copy()
+    answer.flat[wrong] += 0.5
+    texts = [base64.b64encode(array.astype("<f8").tobytes()).decode() for array in (truth, answer)]
+    return {"kind": kind, "shape": shape, "expected": texts[0], "answer": texts[1]}
 
 
 @pytest.mark.parametrize(

@@ -60,8 +60,8 @@ def test_nine_in_ten_mistakes_are_recognized_whatever_inputs_a_student_draws():
         missed = []
         for mistake in KNOWN:
             calls = [
-                (arguments, named, roughened(came))
-                for arguments, named, came in calls_of(mistake, student)[1]
+                (arguments, named, roughened(answer))
+                for arguments, named, answer in calls_of(mistake, student)[1]
             ]
             closest = misconceptions.closest(PLAN.task(mistake.task), calls)
             if closest is None or closest.name != mistake.name:

@@ -112,9 +112,9 @@ TASK = plan.Task("merge", "radiance.debevec.merge", 1)
 
 @pytest.fixture
 def named(monkeypatch):
-    """named({name: answer}, came, right) -> the name of the mistake that explains an answer."""
+    """named({name: answer}, student_answer, right) -> the name of the mistake that explains an answer."""
 
-    def named(answers, *came, right=1.0):
+    def named(answers, *student_answers, right=1.0):
         mistakes = [
             KnownMistake(
                 name=name, task="merge", sentence="", function=lambda k, answer=answer: answer
@@ -123,14 +123,16 @@ def named(monkeypatch):
         ]
         monkeypatch.setattr(misconceptions, "of_task", lambda task: mistakes)
         monkeypatch.setattr(plan, "function", lambda task: lambda k: right)
-        mistake_found = closest(TASK, [((k,), {}, answer) for k, answer in enumerate(came)])
+        mistake_found = closest(
+            TASK, [((k,), {}, answer) for k, answer in enumerate(student_answers)]
+        )
         return mistake_found and mistake_found.name
 
     return named
 
 
 @pytest.mark.parametrize(
-    ("came", "name"),
+    ("student_answer", "name"),
     [
         (1.001, None),
         (1.0011, "near"),
@@ -139,16 +141,18 @@ def named(monkeypatch):
         (None, None),
     ],
 )
-def test_an_answer_is_no_mistake_within_a_thousandth_of_the_librarys(came, name, named):
-    assert named({"near": 1.0015, "far": 5.0}, came) == name
+def test_an_answer_is_no_mistake_within_a_thousandth_of_the_librarys(student_answer, name, named):
+    assert named({"near": 1.0015, "far": 5.0}, student_answer) == name
 
 
 @pytest.mark.parametrize(
-    ("came", "name"),
+    ("student_answer", "name"),
     [(2.0, "two"), (2.0 * 1.0999, "two"), (2.0 * 1.1001, None), (1.5 * 0.9, None), (1.95, "two")],
 )
-def test_a_mistake_must_explain_all_but_a_tenth_of_the_difference_to_the_library(came, name, named):
-    assert named({"two": 2.0}, came) == name
+def test_a_mistake_must_explain_all_but_a_tenth_of_the_difference_to_the_library(
+    student_answer, name, named
+):
+    assert named({"two": 2.0}, student_answer) == name
 
 
 def test_a_difference_of_exactly_one_thousandth_still_counts_as_equal(named):

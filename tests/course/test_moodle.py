@@ -59,11 +59,11 @@ WORKSHEET = [
 @pytest.fixture
 def rows():
     course = classroom.GradingContext(ROSTER, HOMEWORK, GradingOptions(), Late(0, 1.0))
-    came = {
+    handins = {
         "t": Submission("t", ("b1", "b2"), None, DUE + timedelta(days=2), "digest"),
         "b3": Submission("b3", ("b3",), None, DUE, "digest"),
     }
-    return marks.gradebook_rows(course, came, {"t": 90.5})
+    return marks.gradebook_rows(course, handins, {"t": 90.5})
 
 
 @pytest.fixture

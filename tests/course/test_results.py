@@ -37,7 +37,7 @@ def hostile():
         HOSTILE,
     )
     hidden = replace(
-        bad, name="test_c", promise="The hidden one", hidden=True, message="the secret", said=""
+        bad, name="test_c", promise="The hidden one", hidden=True, message="the secret", printed=""
     )
     return Result(
         student=HOSTILE,
@@ -113,7 +113,7 @@ def test_a_teams_copy_shows_only_the_name_and_points_of_a_hidden_check(hostile):
         "gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1]
     )
     hidden = replace(
-        hidden, hints=("first hint",), drawing=picture, said="what it printed", hidden=True
+        hidden, hints=("first hint",), drawing=picture, printed="what it printed", hidden=True
     )
     own = replace(hostile.checks[1], message="yours to read")
     whole = results.to_json(replace(hostile, checks=(own, hidden)))

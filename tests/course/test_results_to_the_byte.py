@@ -29,7 +29,7 @@ TEXT = """{
    "message": "",
    "hints": [],
    "drawing": [],
-   "said": "",
+   "printed": "",
    "hidden": false,
    "kind": "",
    "follows": "",
@@ -61,7 +61,7 @@ def test_the_json_of_a_result_has_the_documented_form():
 
 def test_a_teams_copy_equals_the_result_without_hidden_parts():
     hidden = replace(
-        RESULT, checks=(CHECK, replace(CHECK, hidden=True, message="secret", said="s"))
+        RESULT, checks=(CHECK, replace(CHECK, hidden=True, message="secret", printed="s"))
     )
     shown = results.for_team(results.to_json(hidden))
     assert shown.startswith(b'{\n "version": 1,\n "student": "ada",') and shown.endswith(b"}\n")
@@ -121,9 +121,18 @@ def test_a_result_of_an_earlier_version_has_defaults_for_later_fields():
             results.from_json(
                 json.dumps({key: value for key, value in read.items() if key != name}).encode()
             )
-    del read["checks"][0]["said"]
-    with pytest.raises(ValueError, match="'said'"):
+    del read["checks"][0]["printed"]
+    with pytest.raises(ValueError, match="'printed'"):
         results.from_json(json.dumps(read).encode())
+
+
+def test_a_result_of_an_earlier_version_may_call_the_printed_text_said():
+    result = replace(RESULT, checks=(replace(CHECK, printed="what it printed"),))
+    written = json.loads(results.to_json(result))
+    written["checks"][0]["said"] = written["checks"][0].pop("printed")
+    early = json.dumps(written).encode()
+    assert results.from_json(early) == result
+    assert json.loads(results.for_team(early))["checks"][0]["printed"] == "what it printed"
 
 
 def test_images_of_a_result_are_stored_as_text():

@@ -68,8 +68,8 @@ def test_a_library_function_is_called_like_a_students_and_its_calls_are_recorded
     arguments = np.arange(3.0)
     answer = subject.f(arguments, k=2)
     assert answer[0].tolist() == [0, 2, 4] and answer[1] == [1]
-    ((args, named, came),) = subject.calls
-    assert named == {"k": 2} and came is answer
+    ((args, kwargs, kept_answer),) = subject.calls
+    assert kwargs == {"k": 2} and kept_answer is answer
     arguments[:] = 9
     assert args[0].tolist() == [0, 2, 4]
     with pytest.raises(ZeroDivisionError):

@@ -324,7 +324,7 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
         "list(report.write_steps(out, plan.read().homeworks['hw2'], handins))\n"
     )
     files = [str(path) for path in MADE_APART if path.stem in {f"hw2_{name}" for name in names}]
-    came = []
+    reports = []
     for seed in ("1", "2"):
         out = tmp_path / seed
         subprocess.run(
@@ -333,8 +333,8 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
             env=os.environ
             | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(report.__file__).parents[2])},
         )
-        came.append([(out / name).read_bytes() for name in ("similar.html", "similar.csv")])
-    assert came[0] == came[1] and b"a0" in came[0][0]
+        reports.append([(out / name).read_bytes() for name in ("similar.html", "similar.csv")])
+    assert reports[0] == reports[1] and b"a0" in reports[0][0]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only here has a file an owner's mode")

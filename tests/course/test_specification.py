@@ -177,7 +177,7 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
 
 
 @pytest.mark.parametrize(
-    ("came", "message"),
+    ("answer", "message"),
     [
         *(
             (None, "expected numbers, got None"),
@@ -190,6 +190,6 @@ def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
         ),
     ],
 )
-def test_a_non_numeric_answer_is_described_in_the_message(came, message):
+def test_a_non_numeric_answer_is_described_in_the_message(answer, message):
     with pytest.raises(compare.AnswerMismatch, match=message):
-        compare.numbers(came)
+        compare.numbers(answer)

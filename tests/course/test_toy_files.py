@@ -75,9 +75,9 @@ def test_a_toy_class_is_written_only_to_a_new_or_empty_folder(made, short, tmp_p
     assert rows[4]["name"] == "Student 05"
     assert [row["student"] for row in rows if row["team"] == "t1"] == ["s03", "s04"]
     assert {row["team"] for row in rows} == {"t1", ""}
-    came = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
-    assert [row["file"] for row in came] == list(toy_class.FILES)
-    assert all(datetime.fromisoformat(row["received"]).tzinfo for row in came)
+    received = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
+    assert [row["file"] for row in received] == list(toy_class.FILES)
+    assert all(datetime.fromisoformat(row["received"]).tzinfo for row in received)
     text = (folder / "README.md").read_text("utf8")
     assert text.endswith("\n")
     assert str(folder) in text

@@ -411,10 +411,10 @@ def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
     rng = np.random.default_rng(3)
     grays = rng.integers(0, 256, (3, 30, 40), np.uint8)
     offsets = np.array([[0, 0], [4, -3], [-2, 5]])
-    came = plan.function(task_of("shift", variant))(grays, eval(arguments, {"offsets": offsets}))
+    shifted = plan.function(task_of("shift", variant))(grays, eval(arguments, {"offsets": offsets}))
     common = (slice(None), *crop(offsets, grays.shape[1:]))
     expected = shift(grays, offsets)
-    assert np.array_equal(came[common] if variant.startswith("black") else came, expected)
+    assert np.array_equal(shifted[common] if variant.startswith("black") else shifted, expected)
 
 
 @pytest.mark.parametrize(("task", "variant"), EVERY)

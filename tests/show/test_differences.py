@@ -10,9 +10,9 @@ IMAGE = np.linspace(0, 1, 48).reshape(6, 8)
 
 
 def test_image_shows_expected_answer_and_difference_with_a_ring_at_the_worst_pixel():
-    came = IMAGE.copy()
-    came[4, 5] += 0.5
-    shown = differences.image(IMAGE, came, what="the map")
+    answer = IMAGE.copy()
+    answer[4, 5] += 0.5
+    shown = differences.image(IMAGE, answer, what="the map")
     scale = "difference from -0.5 (purple) to 0.5 (orange)"
     assert shown.captions == ("expected", "yours", f"{scale}: worst at row 4, column 5")
     assert "off by 0.5" in shown.alts[2] and all(alt.startswith("the map") for alt in shown.alts)
@@ -22,8 +22,8 @@ def test_image_shows_expected_answer_and_difference_with_a_ring_at_the_worst_pix
 
 
 def test_expected_and_answer_have_the_same_scale():
-    came = np.clip(2 * IMAGE, 0, None)
-    frames = differences.image(IMAGE, came).frames
+    answer = np.clip(2 * IMAGE, 0, None)
+    frames = differences.image(IMAGE, answer).frames
     expected = web.decode_picture(frames[0]).astype(int)
     yours = web.decode_picture(frames[1]).astype(int)
     assert yours.mean() > expected.mean() + 30
@@ -31,11 +31,11 @@ def test_expected_and_answer_have_the_same_scale():
 
 @pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 1e300])
 def test_value_that_is_not_finite_counts_as_worst_and_does_not_change_the_scale(odd):
-    came = IMAGE.copy()
-    came[2, 3] = odd
-    shown = differences.image(IMAGE, came)
+    answer = IMAGE.copy()
+    answer[2, 3] = odd
+    shown = differences.image(IMAGE, answer)
     assert "row 2, column 3" in shown.alts[2] and web.decode_picture(shown.frames[1]).std() > 20
-    curve = differences.curve(IMAGE.ravel(), came.ravel())
+    curve = differences.curve(IMAGE.ravel(), answer.ravel())
     assert "at 19 they differ by" in curve.alts[0]
 
 
@@ -49,16 +49,16 @@ def test_values_over_many_decades_have_a_logarithmic_scale():
 
 def test_worst_channel_of_a_color_image_counts():
     colour = np.repeat(IMAGE[..., None], 3, axis=-1)
-    came = colour.copy()
-    came[1, 1, 2] -= 0.25
-    shown = differences.image(colour, came)
+    answer = colour.copy()
+    answer[1, 1, 2] -= 0.25
+    shown = differences.image(colour, answer)
     assert "row 1, column 1" in shown.alts[2] and "off by 0.25" in shown.alts[2]
 
 
 def test_constant_image_and_all_nan_can_be_drawn():
-    for came in (np.zeros((4, 4)), np.full((4, 4), np.nan)):
-        assert len(differences.image(np.zeros((4, 4)), came).frames) == 3
-        assert differences.curve(np.zeros(16), came.ravel()).frames[0]
+    for answer in (np.zeros((4, 4)), np.full((4, 4), np.nan)):
+        assert len(differences.image(np.zeros((4, 4)), answer).frames) == 3
+        assert differences.curve(np.zeros(16), answer.ravel()).frames[0]
 
 
 def test_large_image_is_reduced():
@@ -77,9 +77,9 @@ def test_difference_below_two_curves_shows_small_deviations():
     assert changed[lower:].sum() > changed[:lower].sum()  # above, only the ring has moved
 
 
-@pytest.mark.parametrize("came", [np.zeros((5, 8)), np.zeros(48)])
-def test_answer_of_another_shape_is_rejected(came):
+@pytest.mark.parametrize("answer", [np.zeros((5, 8)), np.zeros(48)])
+def test_answer_of_another_shape_is_rejected(answer):
     with pytest.raises(ValueError, match="of one shape"):
-        differences.image(IMAGE, came)
+        differences.image(IMAGE, answer)
     with pytest.raises(ValueError, match="of one length"):
-        differences.curve(np.zeros(3), came)
+        differences.curve(np.zeros(3), answer)

@@ -197,7 +197,7 @@ def test_picture_rejects_empty_alt_texts(alt):
 
 
 @pytest.mark.parametrize(
-    ("drawn", "came"),
+    ("drawn", "description"),
     [
         (None, "NoneType"),
         (np.zeros((4, 4)), "dtype float64"),
@@ -206,8 +206,8 @@ def test_picture_rejects_empty_alt_texts(alt):
         (np.zeros((0, 4), np.uint8), r"shape \(0, 4\)"),
     ],
 )
-def test_render_rejects_other_types_and_arrays_that_are_no_images(drawn, came):
-    with pytest.raises(ValueError, match=f"draw.*{came}"):
+def test_render_rejects_other_types_and_arrays_that_are_no_images(drawn, description):
+    with pytest.raises(ValueError, match=f"draw.*{description}"):
         pictures.render(drawn)
 
 

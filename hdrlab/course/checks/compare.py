@@ -1,6 +1,6 @@
 """Compare an answer with what is expected, and keep both so that the difference can be drawn.
 
-came      the answer of a student's function: plain arrays that the channel built, and nothing else
+answer    that of a student's function: plain arrays that the channel built, and nothing else
 expected  what the specification says it should be
 
 The order of the comparison: is there an answer, is it numbers, shape, finite, and at last
@@ -27,7 +27,7 @@ class AnswerMismatch(AssertionError):
     Attributes
     ----------
     message : what differs
-    expected, came : arrays of the same shape, or None
+    expected, answer : arrays of the same shape, or None
     kind : how to draw the two
     """
 
@@ -36,13 +36,13 @@ class AnswerMismatch(AssertionError):
         message: str,
         *,
         expected: Array | None = None,
-        came: Array | None = None,
+        answer: Array | None = None,
         kind: Kind = "values",
     ) -> None:
         super().__init__(message)
         self.message = message
         self.expected = expected
-        self.came = came
+        self.answer = answer
         self.kind = kind
 
 
@@ -63,27 +63,27 @@ def require(condition: Any, message: str, **details: Any) -> None:
         raise AnswerMismatch(message, **details)
 
 
-def numbers(came: Any, *, what: str = "the answer") -> Array:
+def numbers(answer: Any, *, what: str = "the answer") -> Array:
     """Return an answer as an array of real numbers, or raise AnswerMismatch."""
-    require(came is not None, f"{what}: expected numbers, got None; return the result")
-    if isinstance(came, tuple | list):
-        came = as_listed(came, what)
-    is_one_array = not isinstance(came, tuple | list | str | bytes | dict)
-    require(is_one_array, f"{what}: expected one array of numbers, got {_describe(came)}")
-    array = np.asarray(came)
+    require(answer is not None, f"{what}: expected numbers, got None; return the result")
+    if isinstance(answer, tuple | list):
+        answer = as_listed(answer, what)
+    is_one_array = not isinstance(answer, tuple | list | str | bytes | dict)
+    require(is_one_array, f"{what}: expected one array of numbers, got {_describe(answer)}")
+    array = np.asarray(answer)
     require(array.dtype.kind in "biuf", f"{what}: expected real numbers, got dtype {array.dtype}")
     return array
 
 
-def as_listed(came: Any, what: str = "the answer") -> Any:
+def as_listed(answer: Any, what: str = "the answer") -> Any:
     """Return a list of numbers, nested or not, as an array, and anything else unchanged."""
     try:
-        array = np.array(came)
+        array = np.array(answer)
     except ValueError:  # a ragged list
-        return came
+        return answer
     if not array.size or array.dtype.kind not in "biuf":
-        return came
-    notes.append(f"{what}: {_describe(came)} was taken for an array of shape {array.shape}")
+        return answer
+    notes.append(f"{what}: {_describe(answer)} was taken for an array of shape {array.shape}")
     return array
 
 
@@ -99,28 +99,28 @@ def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> 
     return array.reshape(shape)
 
 
-def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
+def parts(answer: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
     """Return the first `count` parts of an answer in several parts, or raise AnswerMismatch.
 
     One array with `count` rows is taken for its rows.
     """
-    if isinstance(came, np.ndarray) and came.ndim > 0 and len(came) == count:
-        notes.append(f"{what}: an array of shape {came.shape} was taken for {count} parts")
-        came = tuple(came)
-    has_parts = isinstance(came, tuple | list) and len(came) >= count
-    require(has_parts, f"{what}: expected {count} parts, got {_describe(came)}")
-    return tuple(came[:count])
+    if isinstance(answer, np.ndarray) and answer.ndim > 0 and len(answer) == count:
+        notes.append(f"{what}: an array of shape {answer.shape} was taken for {count} parts")
+        answer = tuple(answer)
+    has_parts = isinstance(answer, tuple | list) and len(answer) >= count
+    require(has_parts, f"{what}: expected {count} parts, got {_describe(answer)}")
+    return tuple(answer[:count])
 
 
-def states(came: Any, *, what: str = "the steps") -> list[Any]:
+def states(answer: Any, *, what: str = "the steps") -> list[Any]:
     """Return the states that a generator yielded, at least one, or raise AnswerMismatch."""
-    has_states = isinstance(came, list | tuple) and len(came) > 0
-    require(has_states, f"{what}: expected a generator that yields states, got {_describe(came)}")
-    return list(came)
+    has_states = isinstance(answer, list | tuple) and len(answer) > 0
+    require(has_states, f"{what}: expected a generator that yields states, got {_describe(answer)}")
+    return list(answer)
 
 
 def same(
-    came: Any,
+    answer: Any,
     expected: Any,
     tolerance: float,
     *,
@@ -133,7 +133,7 @@ def same(
 
     Parameters
     ----------
-    came, expected : arrays or numbers; where NaN is expected, the answer must be NaN
+    answer, expected : arrays or numbers; where NaN is expected, the answer must be NaN
     tolerance : the largest difference of a value that is still the same, in the unit of the values
     what : the answer's name in the message
     kind : how to draw it; by default a curve for (n,), values for all else
@@ -141,14 +141,14 @@ def same(
     where : mask; values elsewhere may be anything
     """
     wanted = np.asarray(expected)
-    array = as_shape(numbers(came, what=what), wanted.shape, what)
+    array = as_shape(numbers(answer, what=what), wanted.shape, what)
     compared = np.broadcast_to(True if where is None else where, wanted.shape)
     values = array.astype(np.float64)
     truth = wanted.astype(np.float64)
     unknown = np.isnan(truth)
     details: dict[str, Any] = {
         "expected": wanted,
-        "came": array,
+        "answer": array,
         "kind": _kind(wanted, kind, picture=picture),
     }
     _require_finite(values[compared & ~unknown], what, **details)
@@ -187,9 +187,9 @@ def _largest_error(error: Array, values: Array, truth: Array, tolerance: float) 
     return f"expected {truth[index]:.6g}{place}, got {values[index]:.6g}{allowed}{wrong_values}"
 
 
-def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Array:
+def finite(answer: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Array:
     """Return a finite answer of which only the shape is known beforehand, or raise AnswerMismatch."""
-    array = as_shape(numbers(came, what=what), shape, what)
+    array = as_shape(numbers(answer, what=what), shape, what)
     _require_finite(array.astype(np.float64), what)
     return array
 
@@ -200,13 +200,13 @@ def _require_finite(values: Array, what: str, **details: Any) -> None:
     require(not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **details)
 
 
-def _describe(came: Any) -> str:
+def _describe(answer: Any) -> str:
     """Return the kind of an answer in a few words, without calling any of its methods."""
-    if came is None:
+    if answer is None:
         return "nothing (None)"
-    if isinstance(came, tuple | list | bytes | str):
-        return f"{type(came).__name__} of {len(came)}"
-    if isinstance(came, np.ndarray | np.generic | int | float):
+    if isinstance(answer, tuple | list | bytes | str):
+        return f"{type(answer).__name__} of {len(answer)}"
+    if isinstance(answer, np.ndarray | np.generic | int | float):
         return "one array"
     return "something else"
 

@@ -344,17 +344,17 @@ def _worst_part(call: str, answer: Any, truth: Any) -> tuple[str, Any, Any]:
         return call, answer, truth
     if not isinstance(truth, np.ndarray) or not np.ndim(truth):
         return call, answer, truth
-    came = compare.as_listed(answer) if isinstance(answer, tuple | list) else answer
-    if not isinstance(came, np.ndarray) or came.shape != truth.shape:
+    array = compare.as_listed(answer) if isinstance(answer, tuple | list) else answer
+    if not isinstance(array, np.ndarray) or array.shape != truth.shape:
         return call, answer, truth
     if truth.size <= snippets.MAX_SHOWN_NUMBERS:
-        return call, came, truth
-    if came is not answer:
+        return call, array, truth
+    if array is not answer:
         call = f"np.array({call})"
-    error = np.abs(came.astype(np.float64) - truth.astype(np.float64))
+    error = np.abs(array.astype(np.float64) - truth.astype(np.float64))
     index = np.unravel_index(int(np.argmax(np.nan_to_num(error, nan=np.inf))), truth.shape)
     place = ", ".join(str(int(i)) for i in index)
-    return f"{call}[{place}]", came[index], truth[index]
+    return f"{call}[{place}]", array[index], truth[index]
 
 
 def differs(answer: Any, truth: Any) -> bool:
@@ -391,16 +391,16 @@ def _relative_error(answer: Any, truth: Any, scale: float) -> float:
         answer = compare.as_listed(answer)
     if not isinstance(answer, np.ndarray | np.generic | int | float):
         return np.inf
-    came = np.asarray(answer).squeeze()
+    values = np.asarray(answer).squeeze()
     right = np.asarray(truth).squeeze()
-    if came.shape != right.shape or came.dtype.kind not in "biuf":
+    if values.shape != right.shape or values.dtype.kind not in "biuf":
         return np.inf
     is_whole = right.dtype.kind in "biu"
-    came = came.astype(np.float64)
+    values = values.astype(np.float64)
     right = right.astype(np.float64)
     if is_whole:
-        return 0.0 if np.array_equal(came, right) else np.inf
+        return 0.0 if np.array_equal(values, right) else np.inf
     is_known = np.isfinite(right)
-    if not np.array_equal(is_known, np.isfinite(came)):
+    if not np.array_equal(is_known, np.isfinite(values)):
         return np.inf
-    return float(np.abs(came - right)[is_known].max(initial=0.0) / scale)
+    return float(np.abs(values - right)[is_known].max(initial=0.0) / scale)

@@ -1,4 +1,4 @@
-"""What the specification asks when it runs in this very process: code to trust, such as the library's own."""
+"""Call trusted functions in this process, such as the library's, as checks call those of students."""
 
 from copy import deepcopy
 
@@ -7,10 +7,10 @@ from hdrlab.course.checks.compare import plain
 
 
 class Subject:
-    """What a check asks: each attribute is a task's function, whose answers come as plain arrays.
+    """The functions that a check calls: each attribute is a task's function, whose answers are plain arrays.
 
-    `calls` remembers them: arguments, named arguments, and the answer, None where an error was
-    raised.
+    `calls` lists the calls: arguments, keyword arguments, and the answer, or None if the function
+    raised an exception.
     """
 
     def __init__(self, functions):
@@ -21,15 +21,15 @@ class Subject:
         if task.startswith("_") or task not in self._functions:
             raise AttributeError(f"no function for the task {task}")
 
-        def ask(*given, **named):
+        def function(*args, **kwargs):
             answer = None
             try:
-                answer = plain(self._functions[task](*given, **named))
+                answer = plain(self._functions[task](*args, **kwargs))
             finally:
-                self.calls.append((deepcopy(given), deepcopy(named), answer))
+                self.calls.append((deepcopy(args), deepcopy(kwargs), answer))
             return answer
 
-        return ask
+        return function
 
 
 def library(own=None):

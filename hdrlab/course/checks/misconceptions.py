@@ -8,7 +8,7 @@ Real mistakes come in pairs, and a student's own code has details that no wrong 
 mistake need not explain every answer: `diagnose` also names the one that explains all answers of a
 check which fails, as long as no right answer contradicts it.
 
-call        (arguments, keyword arguments, answer) of one call; the answer is None if none came
+call        (arguments, keyword arguments, answer) of one call; the answer is None if there was none
 difference  between two answers, relative: 0 is equal, 1 about as large as the answer itself
 """
 

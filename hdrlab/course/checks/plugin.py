@@ -144,27 +144,32 @@ class GradingPlugin:
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
-        said = MEMORY_ADDRESS.sub("", subject.printed[:MAX_PRINTED_CHARACTERS])
+        printed = MEMORY_ADDRESS.sub("", subject.printed[:MAX_PRINTED_CHARACTERS])
         if not self._is_hidden(item) and isinstance(subject, Subject):
             self._keep_calls(task_of(item), subject, holds=raised is None)
         if isinstance(raised, Unavailable):  # the machine failed, not the submission
             return self._write(unavailable=str(raised))
         if raised is None:
             notes = "\n".join(dict.fromkeys(compare.notes))[:MAX_MESSAGE_CHARACTERS]
-            return self._write(ended=_id(item), outcome="holds", message=notes, said=said)
+            return self._write(ended=_id(item), outcome="holds", message=notes, printed=printed)
         kind = raised.kind if isinstance(raised, NoAnswer) else ""
         problem = "" if kind in NOT_TRIED_AGAIN else self._problem_of_check(item)
         if problem:
-            return self._write(ended=_id(item), outcome="broken", message=problem, said=said)
+            return self._write(ended=_id(item), outcome="broken", message=problem, printed=printed)
         if not self._is_hidden(item):
             self.failed.add(task_of(item))
             if kind in EXPLICABLE_KINDS and isinstance(item, pytest.Function):
                 self.explicable.append((item, kind == "raised"))
         if kind == "late":
             self.late.add(task_of(item))
-        told = {"outcome": "no answer" if kind else "fails", "kind": kind}
-        differs = _differs(raised) if self.job["draw"] else None
-        self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
+        self._write(
+            ended=_id(item),
+            outcome="no answer" if kind else "fails",
+            kind=kind,
+            message=_message(raised),
+            differs=_differs(raised) if self.job["draw"] else None,
+            printed=printed,
+        )
 
     def _keep_calls(self, task_id: str, subject: Subject, *, holds: bool) -> None:
         """Keep the calls that a check has made, to recognize a mistake."""
@@ -308,17 +313,17 @@ def hints(check: object) -> list[str]:
 
 def _message(raised: BaseException) -> str:
     """Return the message for a check that does not hold."""
-    said = MEMORY_ADDRESS.sub("", ASSERT_DETAILS.split(str(raised))[0]).strip()
+    message = MEMORY_ADDRESS.sub("", ASSERT_DETAILS.split(str(raised))[0]).strip()
     if (
         isinstance(raised, compare.AnswerMismatch)
-        and raised.came is not None
-        and np.ndim(raised.came)
+        and raised.answer is not None
+        and np.ndim(raised.answer)
     ):
-        return f"{said[:MAX_MESSAGE_CHARACTERS]}\nYours: {describe(raised.came)}"
+        return f"{message[:MAX_MESSAGE_CHARACTERS]}\nYours: {describe(raised.answer)}"
     if isinstance(raised, AssertionError):
         empty = "" if isinstance(raised, NoAnswer) else "The check failed"
-        return (said or empty)[:MAX_MESSAGE_CHARACTERS]
-    return f"The answer could not be compared: {type(raised).__name__}: {said}"[
+        return (message or empty)[:MAX_MESSAGE_CHARACTERS]
+    return f"The answer could not be compared: {type(raised).__name__}: {message}"[
         :MAX_MESSAGE_CHARACTERS
     ]
 
@@ -327,13 +332,13 @@ def _differs(raised: BaseException) -> dict[str, Any] | None:
     """Return the two arrays of a difference that can be drawn, as text, or None."""
     if not isinstance(raised, compare.AnswerMismatch) or raised.kind == "values":
         return None
-    if raised.expected is None or raised.came is None or raised.expected.size > MAX_DRAWN_VALUES:
+    if raised.expected is None or raised.answer is None or raised.expected.size > MAX_DRAWN_VALUES:
         return None
     return {
         "kind": raised.kind,
         "shape": raised.expected.shape,
         "expected": _encode(raised.expected),
-        "came": _encode(raised.came),
+        "answer": _encode(raised.answer),
     }
 
 

@@ -97,7 +97,7 @@ def _hide_check(check: results.Check, anonymity: Anonymity) -> results.Check:
     return replace(
         check,
         message=anonymity.redact(check.message),
-        said=anonymity.redact(check.said),
+        printed=anonymity.redact(check.printed),
         counterexample=_redact_counterexample(check.counterexample, anonymity),
         drawing=check.drawing._replace(
             alts=tuple(anonymity.redact(alt) for alt in check.drawing.alts),

@@ -51,7 +51,7 @@ VERSIONS = {
 # SciPy takes long to import, and a page in a browser loads it only for the tasks that need it
 with contextlib.suppress(metadata.PackageNotFoundError):
     VERSIONS["scipy"] = metadata.version("scipy")
-NO_ANSWER = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
+NO_ANSWER = {"outcome": "no answer", "message": "This check was not answered", "printed": ""}
 
 # What the checks write down, one after another: a dictionary for each check and for each end of one.
 Event = dict[str, Any]
@@ -253,7 +253,7 @@ def _draw_difference(event: Event) -> Drawing:
     task = Path(event["ended"].partition("::")[0]).stem.removeprefix("test_")
     draw = differences.image if difference["kind"] == "image" else differences.curve
     expected = _decode_array(difference["expected"], difference["shape"])
-    returned = _decode_array(difference["came"], difference["shape"])
+    returned = _decode_array(difference["answer"], difference["shape"])
     try:
         drawn = draw(expected, returned, what=task)
     except ValueError:  # a student's values may be such that matplotlib cannot draw them
@@ -262,7 +262,7 @@ def _draw_difference(event: Event) -> Drawing:
 
 
 def _decode_array(text: str, shape: Sequence[int]) -> F64:
-    """Return an array that came as text."""
+    """Return the array that a text encodes."""
     return np.frombuffer(base64.b64decode(text), "<f8").reshape(shape)
 
 
@@ -356,7 +356,7 @@ def _check(
         message=sanitize_text(shown["message"], MAX_MESSAGE_LENGTH),
         hints=tuple(case["hints"]),
         drawing=shown.get("drawing", Drawing()),
-        said=sanitize_text(shown["said"], MAX_PRINTED_LENGTH),
+        printed=sanitize_text(shown["printed"], MAX_PRINTED_LENGTH),
         hidden=case["hidden"],
         kind=shown.get("kind", ""),
         counterexample=examples_of_cases[0] if examples_of_cases else None,

@@ -43,7 +43,7 @@ PUBLIC_CHECK_FIELDS = (
     "message",
     "hints",
     "drawing",
-    "said",
+    "printed",
     "follows",
     "counterexample",
 )
@@ -52,6 +52,8 @@ EXACT_POINTS = re.compile(r"-?\d{1,30}(/\d{1,30})?", re.ASCII)
 # fields that results of early versions of hdrlab do not have
 EARLY_RESULT = {"at_most": None}
 EARLY_CHECK = {"kind": "", "follows": "", "counterexample": None}
+# names of a check's fields in results of early versions, and their present names
+EARLY_CHECK_NAMES = {"said": "printed"}
 Outcome = Literal["holds", "fails", "no answer", "broken"]
 
 
@@ -86,7 +88,7 @@ class Check:
     message : why it does not hold, in words
     hints : from vague to clear
     drawing : images of the expected array, the returned array and their difference
-    said : what the function printed
+    printed : what the function printed
     hidden : whether it is one of the instructor's hidden checks, of which students see only the
         outcome
     kind : why there is no answer: "missing", "raised", "late", "died", "refused", "damaged", or
@@ -104,7 +106,7 @@ class Check:
     message: str = ""
     hints: tuple[str, ...] = ()
     drawing: Drawing = Drawing()
-    said: str = ""
+    printed: str = ""
     hidden: bool = False
     kind: str = ""
     follows: str = ""
@@ -228,7 +230,13 @@ def reveal_hidden_checks(data: bytes) -> bytes:
 def _shown_fields(check: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of a check's JSON that its team may see."""
     names = HIDDEN_CHECK_FIELDS if check["hidden"] else PUBLIC_CHECK_FIELDS
-    return {name: check[name] for name in names}
+    present = _with_present_names(check)
+    return {name: present[name] for name in names}
+
+
+def _with_present_names(check: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a check's JSON, which an early version may have written, by present names."""
+    return {EARLY_CHECK_NAMES.get(name, name): value for name, value in check.items()}
 
 
 def _dump(written: dict[str, Any]) -> bytes:
@@ -306,7 +314,8 @@ def _result_from_json(written: dict[str, Any]) -> Result:
     return Result(**values)
 
 
-def _check_from_json(written: dict[str, Any]) -> Check:
+def _check_from_json(check: dict[str, Any]) -> Check:
+    written = _with_present_names(check)
     values: dict[str, Any] = dict(EARLY_CHECK)
     for field in fields(Check):
         if field.name in written or field.name not in EARLY_CHECK:
@@ -318,7 +327,7 @@ def _check_from_json(written: dict[str, Any]) -> Check:
     if values["counterexample"] is not None:
         example = Counterexample(**values["counterexample"])
         values["counterexample"] = Counterexample(*_require_texts("counterexample", example))
-    for name in ("task", "name", "promise", "outcome", "message", "said", "kind", "follows"):
+    for name in ("task", "name", "promise", "outcome", "message", "printed", "kind", "follows"):
         _require_texts(name, [values[name]])
     if not isinstance(values["hidden"], bool):
         raise TypeError(f"hidden {values['hidden']!r:.40}")

@@ -1,7 +1,7 @@
 """Figures for a failed check: the expected answer, the student's answer, and their difference.
 
 expected  (H, W) or (H, W, 3) image, or (n,) curve
-came      the student's answer; its numbers may be of any size, NaN or infinite
+answer    the student's answer; its numbers may be of any size, NaN or infinite
 
 An image with a wide range of values is drawn on a logarithmic scale.
 """
@@ -24,14 +24,14 @@ PIXEL_LEVELS = 256
 MAX_AXIS_LABEL_LENGTH = 28
 
 
-def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
-    """Return expected, came, and came - expected with a ring around the worst pixel, side by side.
+def image(expected: ArrayLike, answer: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
+    """Return expected, answer, and answer - expected with a ring around the worst pixel, side by side.
 
     Both are drawn with the same black and white. In the difference orange is too large, purple too
     small, and gray is no number.
     """
     truth = np.asarray(expected, np.float64)
-    answer = np.asarray(came, np.float64)
+    answer = np.asarray(answer, np.float64)
     if truth.shape != answer.shape or truth.ndim not in (2, 3):
         raise InputError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
@@ -60,13 +60,13 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     return pictures.Picture(frames, alts, captions)
 
 
-def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
+def curve(expected: ArrayLike, answer: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
     """Return both curves in one plot, with a ring where they are furthest apart, and their difference below.
 
     What was expected is a broad gray line.
     """
     truth = np.asarray(expected, np.float64)
-    answer = np.asarray(came, np.float64)
+    answer = np.asarray(answer, np.float64)
     if truth.ndim != 1 or truth.shape != answer.shape:
         raise InputError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
     (k, _), error = _worst((answer - truth)[:, None])

@@ -43,10 +43,10 @@ def not_doubled(images, *, bits=6, luma=False):
                 gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
             )
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -94,10 +94,10 @@ def ties_from_the_corner(images, *, bits=6, luma=False):
                 gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
             )
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -124,10 +124,10 @@ def bitmap_made_small(images, *, bits=6, luma=False):
                 gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
             )
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -154,10 +154,10 @@ def coarsest_level_forgotten(images, *, bits=6, luma=False):
                 gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
             )
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -175,7 +175,7 @@ def nothing_excluded(images, *, bits=6, luma=False):
 
     def step(fixed, moving, offset):
         near = [(offset[0] + dy, offset[1] + dx) for dy, dx in NINE_OFFSETS]
-        return {one: error(fixed, moving, one) for one in near}
+        return {candidate: error(fixed, moving, candidate) for candidate in near}
 
     def search(fixed, moving, *, bits=6, q=0.5):
         pyramid = [(fixed, moving)]
@@ -195,10 +195,10 @@ def nothing_excluded(images, *, bits=6, luma=False):
                 gray(images[fixed], luma=luma), gray(images[moving], luma=luma), bits=bits
             )
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -212,10 +212,10 @@ def to_the_first(images, *, bits=6, luma=False):
         offsets[order[:-1]] = sums
         return offsets - offsets[0]
 
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return chain_offsets(by_brightness(np.asarray(images)), found)
+    return chain_offsets(by_brightness(np.asarray(images)), pair_offsets)
 
 
 @mistake(
@@ -224,7 +224,7 @@ def to_the_first(images, *, bits=6, luma=False):
     "the middle one: change the sign.",
 )
 def wrong_way(images, *, bits=6, luma=False):
-    found = [
+    pair_offsets = [
         state.offset for state in align_steps(images, bits=bits, luma=luma) if state.level == 0
     ]
-    return -chain_offsets(by_brightness(np.asarray(images)), found)
+    return -chain_offsets(by_brightness(np.asarray(images)), pair_offsets)

@@ -47,7 +47,7 @@ def times_believed(images, times, *, order=5, eps=0.001):
         R = np.asarray(R)
         before = np.full(256, np.inf)
         for _ in range(max_iterations):
-            c = np.stack([coefficients(gram(*one, R)) for one in channels])
+            c = np.stack([coefficients(gram(*channel, R)) for channel in channels])
             curves = c @ levels.T
             change = float(np.max(np.abs(curves - before)))
             before = curves

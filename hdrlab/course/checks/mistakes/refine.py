@@ -53,8 +53,8 @@ def absolute_differences(X, start, *, reach=1.0):
 )
 def in_radians(X, start, *, reach=1.0):
     shape = X.shape[1:]
-    found = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
-    return found / [1, 1, np.hypot(*shape) / 2]
+    best_motion = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
+    return best_motion / [1, 1, np.hypot(*shape) / 2]
 
 
 @mistake(
@@ -64,9 +64,9 @@ def in_radians(X, start, *, reach=1.0):
 )
 def about_the_corner(X, start, *, reach=1.0):
     shape = X.shape[1:]
-    found = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
-    H = rigid(shape, found)
-    return np.array([H[1, 2], H[0, 2], found[2]])
+    best_motion = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
+    H = rigid(shape, best_motion)
+    return np.array([H[1, 2], H[0, 2], best_motion[2]])
 
 
 @mistake(
@@ -76,8 +76,8 @@ def about_the_corner(X, start, *, reach=1.0):
 )
 def counterclockwise(X, start, *, reach=1.0):
     shape = X.shape[1:]
-    found = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
-    return found * [1, 1, -1]
+    best_motion = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
+    return best_motion * [1, 1, -1]
 
 
 @mistake(
@@ -86,8 +86,8 @@ def counterclockwise(X, start, *, reach=1.0):
 )
 def exchanged(X, start, *, reach=1.0):
     shape = X.shape[1:]
-    found = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
-    return found[[1, 0, 2]]
+    best_motion = search(lambda motion: mean_square(X, rigid(shape, motion)), start)
+    return best_motion[[1, 0, 2]]
 
 
 @mistake(

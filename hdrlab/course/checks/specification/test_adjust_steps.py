@@ -56,7 +56,7 @@ def get_answer(subject, h, db, D, **options):
         np.all(histograms[-1][low] >= 0.9 * h[low]),
         message,
         expected=h,
-        came=histograms[-1],
+        answer=histograms[-1],
         kind="curve",
     )
     return histograms
@@ -86,7 +86,7 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
         above <= 0.03 * T,
         message,
         expected=solution(h, db, D)[-1].h,
-        came=end,
+        answer=end,
         kind="curve",
     )
 
@@ -105,7 +105,7 @@ def test_trimmings_are_not_redistributed(subject, rng):
     ):
         message = "h: expected that no bin grows in a trim, got larger ones"
         grown = after > before + 1e-6 * before.max()
-        require(not np.any(grown), message, expected=before, came=after, kind="curve")
+        require(not np.any(grown), message, expected=before, answer=after, kind="curve")
     require(after.sum() < h.sum(), "h: expected trims, but the histogram did not change")
 
 

@@ -28,7 +28,7 @@ def get_answer(subject, lL, **options):
         for state in states(subject.attenuation_steps(lL, **options))
     ]
     Phi = finite(answer[-1][4], lL.shape, what="Phi").astype(float)
-    require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi)
+    require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", answer=Phi)
     return answer, np.log(Phi)
 
 
@@ -164,4 +164,4 @@ def test_phi_is_enlarged_by_linear_interpolation(subject, rng):
     steps = np.abs(np.diff(enlarged[INNER], axis=1))
     equal = float(np.mean(steps < 1e-3 * steps.mean()))
     message = f"Phi / phi of the full image: {equal:.0%} of the neighbors in a row are equal"
-    require(equal < 0.3, message, came=enlarged, kind="image")
+    require(equal < 0.3, message, answer=enlarged, kind="image")

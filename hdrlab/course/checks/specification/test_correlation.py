@@ -51,7 +51,7 @@ def test_the_largest_value_is_at_the_shift_of_the_photos(subject, rng):
         np.array_equal(largest, shift) and c.max() > c.min(),
         f"the largest c is at the shift {tuple(largest.tolist())}, expected {tuple(shift.tolist())}",
         expected=cerman.correlation(X),
-        came=c,
+        answer=c,
         kind="image",
     )
 

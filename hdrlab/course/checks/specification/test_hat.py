@@ -37,7 +37,9 @@ def test_every_level_has_a_weight_of_at_least_0(subject, rng):
     """
     n = LEVEL_COUNT
     w = finite(subject.hat(n), (n,), what="w")
-    require((w >= 0).all(), f"w: expected weights of at least 0, got {float(w.min()):.3g}", came=w)
+    require(
+        (w >= 0).all(), f"w: expected weights of at least 0, got {float(w.min()):.3g}", answer=w
+    )
 
 
 @points(4)
@@ -54,7 +56,7 @@ def test_the_weight_is_largest_in_the_middle_and_falls_to_both_ends(subject, rng
     steps = np.diff(w) * np.where(np.arange(n - 1) < n // 2, 1, -1)
     wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
     message = f"w: expected weights that rise to the middle and fall after it; yours do not at level {wrong}"
-    require(wrong == n, message, expected=hat(n), came=w, kind="curve")
+    require(wrong == n, message, expected=hat(n), answer=w, kind="curve")
     same(w, hat(n), 0.02, what="w", kind="curve")  # another check tests the ends
 
 

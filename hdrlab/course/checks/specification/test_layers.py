@@ -57,7 +57,7 @@ def test_the_layers_add_up_to_the_image(subject, rng):
     base, detail = get_answer(subject, lL)
     same(base + detail, lL, 1e-3, what="base + detail", picture=True)
     message = "the detail: expected the texture of the walls, got almost none"
-    require(detail.std() > 0.01, message, came=detail, kind="image")
+    require(detail.std() > 0.01, message, answer=detail, kind="image")
 
 
 @points(5)

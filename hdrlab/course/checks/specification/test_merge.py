@@ -31,7 +31,7 @@ def positive(answer, shape):
     """Return a map of this shape as float64, whose values must all be above 0."""
     E = finite(answer, shape, what="E").astype(float)
     message = f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not"
-    require(np.all(E > 0), message, came=E)
+    require(np.all(E > 0), message, answer=E)
     return E
 
 
@@ -39,7 +39,7 @@ def map_of(answer, images):
     """Return a map as float64, which must be brighter where the photos are."""
     E = positive(answer, images.shape[1:])
     follows = np.corrcoef(np.log(E).ravel(), images.mean(axis=0).ravel())[0, 1] > 0.5
-    require(follows, "E: expected more radiance where the photos are brighter", came=E)
+    require(follows, "E: expected more radiance where the photos are brighter", answer=E)
     return E
 
 
@@ -99,7 +99,9 @@ def test_every_pixel_has_a_finite_radiance(subject, rng):
     """
     images = photographs(rng, smooth(rng))
     E = finite(get_answer(subject, images, TIMES, G), images.shape[1:], what="E")
-    require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E)
+    require(
+        (E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}", answer=E
+    )
 
 
 @points(12)

@@ -22,8 +22,8 @@ def draw_tiles(rng, *, count=COUNT, side=SIDE, sigma=1.0):
 
 def agree(subject, T, variance, tuning, tolerance, *, what="the merged tile"):
     expected = temporal_merge.merge_tile(T, variance, tuning=tuning)
-    came = subject.merge_tile(T, variance, tuning=tuning)
-    same(came, expected, tolerance, what=what, kind="image")
+    answer = subject.merge_tile(T, variance, tuning=tuning)
+    same(answer, expected, tolerance, what=what, kind="image")
 
 
 @points(4)
@@ -36,8 +36,8 @@ def test_equal_tiles_give_the_same_tile(subject, rng):
     """
     tile = rng.uniform(20, 80, (SIDE, SIDE))
     T = np.stack([tile] * COUNT)
-    came = subject.merge_tile(T, 1.0, tuning=12.0)
-    same(came, tile, 1e-3, what="the merged tile", kind="image")
+    answer = subject.merge_tile(T, 1.0, tuning=12.0)
+    same(answer, tile, 1e-3, what="the merged tile", kind="image")
 
 
 @points(4)
@@ -49,8 +49,8 @@ def test_motion_leaves_the_reference_alone(subject, rng):
     The first tile is the reference: D_z = F_0 - F_z. The sign matters.
     """
     T = rng.uniform(0, 1, (COUNT, SIDE, SIDE)) * 100
-    came = subject.merge_tile(T, 1e-6, tuning=0.1)
-    same(came, T[0], 0.05, what="the merged tile", kind="image")
+    answer = subject.merge_tile(T, 1e-6, tuning=0.1)
+    same(answer, T[0], 0.05, what="the merged tile", kind="image")
 
 
 @points(2)
@@ -62,8 +62,8 @@ def test_a_large_tuning_constant_gives_the_mean_of_all_frames(subject, rng):
     The reference is one of the N frames, and counts as well.
     """
     T = draw_tiles(rng, sigma=rng.uniform(3, 6))
-    came = subject.merge_tile(T, 10.0, tuning=1e9)
-    same(came, T.mean(axis=0), 0.01, what="the merged tile", kind="image")
+    answer = subject.merge_tile(T, 10.0, tuning=1e9)
+    same(answer, T.mean(axis=0), 0.01, what="the merged tile", kind="image")
 
 
 @points(3)

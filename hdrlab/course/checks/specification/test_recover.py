@@ -55,7 +55,7 @@ def same_curve(g, response, tolerance):
     truth = responses.true_g(response)
     error = laws.curve_error(g, truth)
     message = f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}"
-    require(error <= tolerance, message, expected=truth, came=g, kind="curve")
+    require(error <= tolerance, message, expected=truth, answer=g, kind="curve")
 
 
 # few pixels do not determine a curve, and right fits of them differ
@@ -133,7 +133,7 @@ def test_the_curve_rises_at_all_levels(subject, rng):
         photos = photographs(rng, response)
         g = get_answer(subject, photos.images, photos.times, order=6)
         falls = np.sum(np.diff(g) < -1e-6)
-        require(falls == 0, f"g: expected a curve that rises, got {falls} falls", came=g)
+        require(falls == 0, f"g: expected a curve that rises, got {falls} falls", answer=g)
         same_curve(g, response, 0.05)
 
 

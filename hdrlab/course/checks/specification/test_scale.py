@@ -45,7 +45,7 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
     No value may be NaN or infinite.
     """
     s = get_answer(subject, draw_inputs(rng))
-    require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", came=s)
+    require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", answer=s)
 
 
 @points(2)

@@ -48,9 +48,9 @@ def test_an_operator_draws_a_band(subject, rng):
     """
     L, Ld, bins = draw_inputs(rng)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
-    _, came_lowest, came_highest = get_answer(subject, L, Ld, bins)
-    same(came_lowest, lowest, 1e-5, what="the minimum of Ld", kind="curve")
-    same(came_highest, highest, 1e-5, what="the maximum of Ld", kind="curve")
+    _, answer_lowest, answer_highest = get_answer(subject, L, Ld, bins)
+    same(answer_lowest, lowest, 1e-5, what="the minimum of Ld", kind="curve")
+    same(answer_highest, highest, 1e-5, what="the maximum of Ld", kind="curve")
 
 
 @points(3)
@@ -63,9 +63,9 @@ def test_a_curve_draws_itself(subject, rng):
     """
     L, Ld, bins = draw_inputs(rng, local=False)
     _, lowest, highest = curves.spread(L, Ld, bins=bins)
-    _, came_lowest, came_highest = get_answer(subject, L, Ld, bins)
-    same(came_lowest, lowest, 1e-5, what="the minimum of Ld of a curve", kind="curve")
-    same(came_highest, highest, 1e-5, what="the maximum of Ld of a curve", kind="curve")
+    _, answer_lowest, answer_highest = get_answer(subject, L, Ld, bins)
+    same(answer_lowest, lowest, 1e-5, what="the minimum of Ld of a curve", kind="curve")
+    same(answer_highest, highest, 1e-5, what="the maximum of Ld of a curve", kind="curve")
 
 
 @points(3)
@@ -84,6 +84,6 @@ def test_the_luminance_is_one_of_the_class(subject, rng):
         inside.all(),
         f"luminance: {np.count_nonzero(~inside)} of {bins} are not in their class",
         expected=np.median(classes, axis=1),
-        came=answer,
+        answer=answer,
         kind="curve",
     )

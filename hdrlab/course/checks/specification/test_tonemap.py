@@ -103,7 +103,7 @@ def test_local_divides_each_pixel_by_its_neighborhood(subject, rng):
         ).astype(float)
         off = np.mean(np.abs(answer - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
         message = f"Ld with local=True{options or ''}: {off:.0%} of the pixels differ from what is expected"
-        require(off <= 0.03, message, expected=expected, came=answer, kind="image")
+        require(off <= 0.03, message, expected=expected, answer=answer, kind="image")
 
 
 @points(2)
