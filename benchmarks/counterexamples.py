@@ -41,7 +41,7 @@ from hdrlab.course.source_code.names import imported_numpy_modules
 STUDENT = "student 0"
 MAX_MEDIAN_NUMBERS = 9
 MAX_CPU_SECONDS = 5
-MIN_SHOWN_PERCENT = 70
+MIN_SHOWN_PERCENT = 80
 PRINTED_COUNT = 10
 
 
