@@ -375,6 +375,53 @@ def test_unusual_radiance_gives_finite_numbers_or_a_clear_error(verb):
             assert all(np.all(np.isfinite(leaf)) for leaf in leaves(answer)), kind
 
 
+def with_one_bright_pixel(images):
+    dark = np.zeros_like(images)
+    dark[:, 0, 5] = 255
+    return dark
+
+
+AWKWARD_PHOTOS = {
+    "one pixel": lambda a: a[:, :1, :1],
+    "one row": lambda a: a[:, :1],
+    "one column": lambda a: a[:, :, :1],
+    "all black": np.zeros_like,
+    "all white": lambda a: np.full_like(a, 255),
+    "all equal": lambda a: np.full_like(a, 128),
+    "one bright pixel": lambda a: np.where(
+        np.arange(a[0].size).reshape(a[0].shape) == 5, 255, 0 * a
+    ),
+    "16 bits": lambda a: a.astype(np.uint16) * 257,
+    "16 bits in the other byte order": lambda a: (a.astype(np.uint16) * 257).astype(">u2"),
+}
+OF_PHOTOS = [
+    verb for verb, (_, needed) in VERBS.items() if needed[0] == "images" and verb not in SLOW
+]
+
+
+# a standard deviation is infinite where no photo measures, and so is a contradiction of light that
+# other photos clip
+INFINITE_OF_PHOTOS = (
+    "radiance.deghosting.ghosts.remove_ghosts",
+    "radiance.uncertainty.merge_with_deviation",
+)
+
+
+@pytest.mark.parametrize("verb", OF_PHOTOS)
+@pytest.mark.filterwarnings("error")
+def test_unusual_photos_give_an_answer_without_infinite_numbers_or_a_clear_error(verb):
+    for kind, make in AWKWARD_PHOTOS.items():
+        arguments_of_call = arguments(verb)
+        arguments_of_call["images"] = make(arguments_of_call["images"])
+        try:
+            answer = call(verb, arguments_of_call)
+        except InputError:
+            continue
+        for leaf in leaves(answer):
+            if leaf.dtype.kind in "fc" and verb not in INFINITE_OF_PHOTOS:
+                assert not np.any(np.isinf(leaf)), kind
+
+
 @pytest.mark.parametrize("verb", LIT)
 def test_half_floats_give_what_their_values_give(verb):
     arguments_of_call = arguments(verb)

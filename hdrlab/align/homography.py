@@ -27,6 +27,8 @@ from hdrlab.core.optional import skimage_feature, skimage_measure, skimage_trans
 
 # Every point of a photograph is compared with every point of the other: only the largest are used.
 MAX_POINTS = 3000
+# scikit-image finds no points in smaller photographs, and raises an IndexError.
+MIN_SIDE_PIXELS = 6
 # A match agrees with a homography that puts it at most this far off, in pixels of its level.
 MAX_INLIER_DISTANCE_PIXELS = 1.5
 # Any four matches fit a homography; with this many that agree it is no coincidence.
@@ -71,6 +73,8 @@ def detail(x: F32) -> F64:
 
 def find_points(x: F32, max_points: int = MAX_POINTS) -> tuple[F64, Array]:
     """Return the points (n, 2), (x, y), of a photograph, the largest first, and their descriptors."""
+    if min(x.shape) < MIN_SIDE_PIXELS:
+        return np.empty((0, 2)), np.empty((0, 128))
     sift = skimage_feature.SIFT()
     try:
         sift.detect_and_extract(detail(x))
