@@ -4,6 +4,7 @@ A command that was disturbed, then run again, leaves the files of a run that nob
 nothing else: no temporary file or folder of the first run.
 """
 
+import json
 import re
 import shutil
 import signal
@@ -18,13 +19,14 @@ from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import nbformat
 import numpy as np
 import pytest
 from PIL import Image
 from support import interrupted_commands, linux_processes, one_task_homework
 
 from benchmarks import own_camera
-from hdrlab import scenes
+from hdrlab import cli, scenes
 from hdrlab.capture import camera, sensor
 from hdrlab.io import photos, radiance, response_files
 
@@ -46,7 +48,7 @@ TOKEN = re.compile(rb"[A-Za-z0-9_-]{20,}|'[A-Za-z0-9_-]{12}'")
 PACKED_AT = re.compile(rb'"made": ".*?"')
 TIME = re.compile(rb"\d{4}-\d\d-\d\dT[\d:]+\.\d+")
 # The moments of a run at which it is killed, as fractions of its changes of files.
-MOMENTS = (0, 0.25, 0.5, 0.75, 1)
+MOMENTS = tuple(k / 9 for k in range(10))
 SLOW_MOMENTS = (0.6,)
 SIGNALS = {"SIGINT": 0.2, "SIGTERM": 0.5, "SIGHUP": 0.9}
 
@@ -81,6 +83,11 @@ def size_of_image(data):
 def without_random_words(data):
     """Return a text without random words and without the current date and time."""
     return TIME.sub(b"", TOKEN.sub(b"", data))
+
+
+def source_of_notebook(data):
+    """Return the cells of an executed notebook; their outputs contain the ids of widgets."""
+    return [cell["source"] for cell in json.loads(data)["cells"]]
 
 
 def members_without_random_words(data):
@@ -160,6 +167,12 @@ COMMANDS = {
         refuses_twice=True,
     ),
     "course pack": Command("course pack out/solutions --plan plan.toml"),
+    "course questions": Command("course questions --inventory -o out/a.zip", output="out/a.zip"),
+    "course slides": Command(
+        "course slides small.ipynb -o out/slides",
+        same={".ipynb": source_of_notebook},
+        is_slow=True,
+    ),
     "course toy": Command("course toy out/class", refuses_twice=True, is_slow=True),
     "gallery init": Command(INIT, refuses_twice=True, same=GALLERY),
     "gallery add": Command(ADD, before=(INIT,), same=GALLERY),
@@ -182,6 +195,13 @@ COMMANDS = {
         output="out/a.zip",
         same={"out/a.zip": members_without_random_words},
     ),
+}
+# Commands without an output file, and those that other tests disturb.
+WITHOUT_OUTPUT = {"doctor", "info", "meter", "plan", "score", "why"}
+DISTURBED_ELSEWHERE = {
+    "gallery serve": "course/test_gallery.py",
+    "shoot": "io/test_tethered.py",
+    "site": "course/test_site.py",
 }
 # Other formats of the same commands, which other libraries write.
 FORMATS = {
@@ -236,11 +256,21 @@ def made(tmp_path_factory):
     levels = np.arange(1, 257) / 256
     response_files.write_curve(here / "curve.csv", np.log(levels))
     (here / "hw2.py").write_text(one_task_homework.CORRECT_CODE)
+    write_small_notebook(here / "small.ipynb")
     (here / "class").mkdir()
     (here / "class/team1.py").write_text(one_task_homework.CORRECT_CODE)
     (here / "class/ben.py").write_text("def hat(n=256):\n    return 1\n")
     make_project(here)
     return here
+
+
+def write_small_notebook(path):
+    """Write a notebook with a title and one question, which asks for a number."""
+    code = "from hdrlab.show.widgets import predict\npredict.entry('How much is 1 + 1?', 2)"
+    cells = [nbformat.v4.new_markdown_cell("# A small page"), nbformat.v4.new_code_cell(code)]
+    for number, cell in enumerate(cells):
+        cell["id"] = f"cell{number}"
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
 
 
 def make_project(here):
@@ -367,6 +397,26 @@ def places(commands, made, tmp_path_factory):
         return known[name]
 
     return find
+
+
+def list_commands(group, prefix=""):
+    """Yield the names of all commands of a group, also of the groups in it."""
+    for name, command in group.commands.items():
+        if hasattr(command, "commands"):
+            yield from list_commands(command, f"{prefix}{name} ")
+        else:
+            yield f"{prefix}{name}"
+
+
+def test_every_command_that_writes_files_is_disturbed():
+    disturbed = {
+        name
+        for name in list_commands(cli.main)
+        if any(command.words.startswith(f"{name} ") for command in COMMANDS.values())
+    }
+    assert set(list_commands(cli.main)) == disturbed | WITHOUT_OUTPUT | set(DISTURBED_ELSEWHERE)
+    for file in DISTURBED_ELSEWHERE.values():
+        assert (Path(__file__).parents[1] / file).exists()
 
 
 def wait_for_processes(folder):
