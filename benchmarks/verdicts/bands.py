@@ -64,14 +64,32 @@ APPEARS = "no band: a sentence appears, and contradicts no other"
 BANDS = (
     with_margin("white balance", "tint, stops", contradictions.MIN_WRONG_STOPS, EITHER),
     with_margin("vignetting", "corners, stops", contradictions.MIN_SLIGHT_STOPS, EITHER),
-    with_margin("light changed in parts", "parts, stops", contradictions.MIN_LOCAL_STOPS, EITHER),
-    with_margin(
-        "the same, if significant",
-        "parts, standard errors",
-        contradictions.MIN_SIGNIFICANCE,
-        EITHER,
+    Band(
+        verdict="vignetting",
+        statistic="explained by the radius",
+        limit=contradictions.FULL_EXPLAINED_BY_RADIUS,
+        low=contradictions.MIN_EXPLAINED_BY_RADIUS,
+        high=contradictions.FULL_EXPLAINED_BY_RADIUS,
+        in_between="counts the change in part",
     ),
-    with_margin("parts or times", "parts over time error", causes.MIN_LOCAL_OVER_TIMES, EITHER),
+    with_margin("light changed in parts", "parts, stops", contradictions.MIN_LOCAL_STOPS, EITHER),
+    Band(
+        verdict="the same, if significant",
+        statistic="parts, standard errors",
+        limit=contradictions.MIN_SIGNIFICANCE,
+        low=contradictions.MIN_SIGNIFICANCE / causes.SIGNIFICANCE_MARGIN,
+        high=contradictions.MIN_SIGNIFICANCE * causes.SIGNIFICANCE_MARGIN,
+        in_between=EITHER,
+    ),
+    # Both the numerator and the denominator may be larger or smaller.
+    Band(
+        verdict="parts or times",
+        statistic="parts over time error",
+        limit=causes.MIN_LOCAL_OVER_TIMES,
+        low=causes.MIN_LOCAL_OVER_TIMES / MARGIN**2,
+        high=causes.MIN_LOCAL_OVER_TIMES * MARGIN**2,
+        in_between=EITHER,
+    ),
     with_margin("wrong times", "time error, stops", contradictions.MIN_WRONG_STOPS, EITHER),
     with_margin("wrong times", "cost in the map, stops", contradictions.MIN_COST_STOPS, EITHER),
     Band(

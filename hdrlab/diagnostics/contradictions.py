@@ -66,8 +66,14 @@ MIN_SLIGHT_STOPS = 0.02
 MIN_SIGNIFICANCE = 4.0
 # stops; the standard error of a part is at least this, because patches have whole pixel values
 MIN_STANDARD_ERROR = 0.003
-# fraction of the variance over the image that the distance from the center must explain
+# Changes from the center to the corners do not count if the distance from the center explains less
+# than the first fraction of the variance over the image, and fully from the second one on. In between
+# they count in part, so that a small change of the photos never changes the measure by much.
 MIN_EXPLAINED_BY_RADIUS = 0.5
+FULL_EXPLAINED_BY_RADIUS = 0.6
+
+# squared stops; keeps a quotient finite where the photos agree everywhere
+TINY_VARIANCE = 1e-12
 
 TimesSource = Literal["kept", "corrected", "relative"]
 
@@ -325,9 +331,15 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
             continue
         r2 = squared_radius[chosen]
         slope = np.polyfit(r2, residuals, 1)[0]
-        is_radial = (slope * r2.std()) ** 2 > MIN_EXPLAINED_BY_RADIUS * residuals.var()
-        disagreement[2, j] = 2 * abs(slope) if is_radial else 0
+        explained = (slope * r2.std()) ** 2 / max(residuals.var(), TINY_VARIANCE)
+        disagreement[2, j] = 2 * abs(slope) * weigh_corners(explained)
     return disagreement
+
+
+def weigh_corners(explained: float) -> float:
+    """Return how much a change counts, of which the distance from the center explains a fraction."""
+    span = FULL_EXPLAINED_BY_RADIUS - MIN_EXPLAINED_BY_RADIUS
+    return float(np.clip((explained - MIN_EXPLAINED_BY_RADIUS) / span, 0, 1))
 
 
 def _tile_medians(residuals: F64, tile: Indices) -> tuple[F64, F64]:

@@ -117,3 +117,10 @@ def test_an_estimate_of_the_times_is_recommended_only_where_none_was_made(
     assert "c by" in text
     assert ("--times estimate" in text) == recommends_estimate
     assert ("--stops" in text) == (times == "relative")
+
+
+def test_a_change_of_the_corners_never_appears_all_at_once():
+    explained = np.linspace(0, 1, 1001)
+    weights = np.array([contradictions.weigh_corners(fraction) for fraction in explained])
+    assert weights[0] == 0 and weights[-1] == 1
+    assert 0 <= np.diff(weights).min() and np.diff(weights).max() < 0.02
