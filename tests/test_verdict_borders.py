@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.verdicts import bands, borders, brackets, claims, machines
+from benchmarks.verdicts import bands, borders, brackets, claims, machines, statistics
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.diagnostics.warning_texts import SENTENCES
@@ -83,6 +83,32 @@ def test_light_that_differs_by_a_millionth_changes_few_pixel_values_by_one_level
     assert differences.max() == 1
     assert 0 < np.mean(differences > 0) < 300e-6
     assert changed.light is ill.light
+
+
+def test_the_statistics_of_a_bracket_are_recorded_while_it_is_assembled():
+    room = scenes.room((140, 210))
+    times = camera.times_around(room, 4, stops=1.5)
+    taken = camera.shoot(room, times, rng=1)
+    wrong = replace(taken, times=taken.times * [1, 1, 2, 1])
+    names = {
+        "spread, stops",
+        "bands, stops",
+        "similarity of gradients",
+        "sum of roots over the least",
+    }
+    values = statistics.measure(wrong)
+    assert names <= {band.statistic for band in bands.BANDS}
+    assert names <= set(values)
+    assert statistics.measure(wrong) == values
+    assert statistics.measure(taken)["time error, stops"] < values["time error, stops"]
+
+
+@pytest.mark.parametrize(("change", "flips", "opposites"), [(1.0, 0, 0), (1.06, 1, 0), (1.2, 1, 1)])
+def test_a_change_larger_than_the_band_is_an_opposite_verdict(change, flips, opposites):
+    band = bands.with_margin("example", "example, stops", 0.2, "names both")
+    narrow = replace(band, low=0.2, high=0.22)
+    changes = [("example, stops", 0.21, change), ("example, stops", 5.0, 9.0), ("other", 0.2, 9.0)]
+    assert statistics.compare_band(narrow, changes) == (1, flips, opposites)
 
 
 @pytest.mark.papers

@@ -16,7 +16,8 @@ An ill that costs less may be warned of or not: what the camera and the pipeline
 no word.
 
 `verdicts-borders` prints the dead bands of all verdicts, and looks for borders where hdrlab claims the
-opposite on the other side. `verdicts-machines` compares the verdicts on the same photos with other
+opposite on the other side. `verdicts-bands` compares the width of each dead band with what a millionth
+of noise changes. `verdicts-machines` compares the verdicts on the same photos with other
 instruction sets, numbers of threads and memory layouts.
 
 Three rows miss their hold, of 12 brackets each:
@@ -38,7 +39,7 @@ import numpy as np
 
 from benchmarks.experiments import Experiment, along, at_most
 from benchmarks.peers import opencv
-from benchmarks.verdicts import borders, brackets, ills, machines
+from benchmarks.verdicts import borders, brackets, ills, machines, statistics
 from hdrlab import pipeline
 from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.bracket import Bracket
@@ -160,6 +161,12 @@ ROWS = (
         "verdicts-borders",
         "borders between two verdicts, and verdicts that are the opposite within a millionth",
         borders.try_borders,
+        (at_most("opposite verdicts", 0),),
+    ),
+    Experiment(
+        "verdicts-bands",
+        "dead bands that a millionth of noise leaves (flips) or crosses (opposite verdicts)",
+        statistics.compare_bands,
         (at_most("opposite verdicts", 0),),
     ),
     Experiment(
