@@ -155,7 +155,7 @@ def watch_errors_in_place(record: Record) -> Iterator[None]:
 @contextmanager
 def watch_confirmations(record: Record) -> Iterator[None]:
     """Record the measures of each alignment about which hdrlab asks whether it is confirmed."""
-    decide = rigid_motion.Fit.is_confirmed.fget
+    decide = vars(rigid_motion.Fit)["is_confirmed"].fget
 
     def is_confirmed(fit: rigid_motion.Fit) -> bool:
         record("similarity of gradients", fit.similarity)
