@@ -63,7 +63,14 @@ EITHER = "names each cause that fits"
 APPEARS = "no band: a sentence appears, and contradicts no other"
 BANDS = (
     with_margin("white balance", "tint, stops", contradictions.MIN_WRONG_STOPS, EITHER),
-    with_margin("vignetting", "corners, stops", contradictions.MIN_SLIGHT_STOPS, EITHER),
+    Band(
+        verdict="vignetting",
+        statistic="corners, stops",
+        limit=contradictions.MIN_SLIGHT_STOPS,
+        low=contradictions.MIN_SLIGHT_STOPS / causes.CORNERS_MARGIN,
+        high=contradictions.MIN_SLIGHT_STOPS * causes.CORNERS_MARGIN,
+        in_between=EITHER,
+    ),
     Band(
         verdict="vignetting",
         statistic="explained by the radius",
@@ -138,7 +145,7 @@ BANDS = (
         statistic="the others, stops",
         limit=outlying_frames.MAX_AGREEING_STOPS,
         low=outlying_frames.MAX_AGREEING_STOPS,
-        high=outlying_frames.MAX_AGREEING_STOPS * MARGIN,
+        high=outlying_frames.MAX_AGREEING_STOPS * outlying_frames.RIVAL_MARGIN,
         in_between="names both photos",
     ),
     Band(

@@ -9,8 +9,8 @@ also looks like others: light that changed in parts of the image looks like moti
 
 Another processor or another number of threads rounds differently, and the statistics differ a
 little. A verdict must not become its opposite then. So hdrlab decides for all statistics that are
-up to MARGIN larger or smaller, too (the significance: SIGNIFICANCE_MARGIN). If the decision is always
-the same, that is the verdict. If not, the warning names each cause that occurs, and says that the
+up to MARGIN larger or smaller, too; two of them have a wider margin. If the decision is always the
+same, that is the verdict. If not, the warning names each cause that occurs, and says that the
 pixels do not show which. Two verdicts of nearly the same statistics therefore have a cause in common,
 or one of them names none.
 `python -m benchmarks verdicts --rows verdicts-borders` lists the borders, and tries them.
@@ -55,6 +55,8 @@ UNDECIDED_FACTOR = 2.0
 # The significance depends on the spread within small parts of the image, and changes more than other
 # statistics do: by a factor of up to 1.3 if the light changes by a millionth.
 SIGNIFICANCE_MARGIN = 1.5
+# So does the change of the corners where it counts in part: by a factor of up to 2.7.
+CORNERS_MARGIN = 3.0
 
 # Light that changed in parts of the image also shows up as a wrong time, but wrong times hardly as
 # light that changed: simulated ones come to 0.02 of their error, and the light to 0.4 and more.
@@ -224,7 +226,8 @@ def _find_within_margin(evidence: Evidence) -> set[Cause]:
         return set()
     known = [name for name in DECISIVE_STATISTICS if getattr(evidence, name) > 0]
     causes: set[Cause] = set()
-    margins = [SIGNIFICANCE_MARGIN if name == "significance" else MARGIN for name in known]
+    wide_margins = {"significance": SIGNIFICANCE_MARGIN, "corners": CORNERS_MARGIN}
+    margins = [wide_margins.get(name, MARGIN) for name in known]
     for exponents in product((-1, 1), repeat=len(known)):
         changes = {
             name: margin**exponent * getattr(evidence, name)

@@ -17,12 +17,14 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Mask, as_mask, as_stack, levels
 from hdrlab.diagnostics import flat_patches, response_steps
-from hdrlab.diagnostics.warning_texts import MARGIN
 
 # stops in a typical patch, by which photos contradict each other
 MIN_CONTRARY_STOPS = 0.3
 # stops in a typical patch, up to which photos agree
 MAX_AGREEING_STOPS = 0.1
+# A photo is named, too, if the others agree up to this factor times the limit without it. Light that
+# changes by a millionth changes their error by a factor of up to 1.23.
+RIVAL_MARGIN = 1.3
 # At least so many photos remain, and this fraction of them.
 MIN_KEPT_PHOTOS = 3
 MIN_KEPT_FRACTION = 2 / 3
@@ -96,7 +98,7 @@ def find_outlying_frames(
         rivals = tuple(
             j
             for j, other_error in zip(tried, max_errors, strict=True)
-            if other_error <= MARGIN * MAX_AGREEING_STOPS and j != tried[best]
+            if other_error <= RIVAL_MARGIN * MAX_AGREEING_STOPS and j != tried[best]
         )
         error = max_errors[best]
         pair_errors = errors_without[best]
