@@ -148,21 +148,3 @@ def test_two_graders_of_a_class_leave_the_results_of_one(tmp_path):
     shutil.rmtree(tmp_path / "results")
     subprocess.run([sys.executable, "-m", "hdrlab", *GRADE.split()], cwd=tmp_path, check=True)
     assert together == interrupted_commands.read_folder(tmp_path / "results")
-
-
-@pytest.mark.notebooks
-def test_two_processes_that_build_a_site_leave_a_whole_one(tmp_path):
-    cells = [{"cell_type": "markdown", "id": "a", "metadata": {}, "source": ["# A small page\n"]}]
-    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    book = {"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}
-    places = [tmp_path / "alone", tmp_path / "together"]
-    for place in places:
-        place.mkdir()
-        (place / "small.ipynb").write_text(json.dumps(book))
-    alone, together = places
-    words = "site --notebooks small.ipynb --out site"
-    subprocess.run([sys.executable, "-m", "hdrlab", *words.split()], cwd=alone, check=True)
-    check_refused_in_a_line(run_twice(words, together), "site")
-    expected = interrupted_commands.read_folder(alone / "site")
-    assert set(interrupted_commands.read_folder(together / "site")) == set(expected)
-    check_no_temporary_file(together)
