@@ -98,4 +98,7 @@ def write_results(
         (folder / RECEIPT_FILE).unlink(missing_ok=True)
     for name, data in contents.items():
         write(folder / name, data, private=True)
-    return [folder / name for name in contents]
+    files = [folder / name for name in FILES]
+    if receipt:
+        files.append(folder / RECEIPT_FILE)
+    return files
