@@ -197,7 +197,7 @@ COMMANDS = {
     ),
 }
 # Commands without an output file, and those that other tests disturb.
-WITHOUT_OUTPUT = {"doctor", "info", "meter", "plan", "score", "why"}
+WITHOUT_OUTPUT = {"doctor", "info", "meter", "plan", "receipt", "score", "why"}
 DISTURBED_ELSEWHERE = {
     "gallery serve": "course/test_gallery.py",
     "shoot": "io/test_tethered.py",

@@ -211,7 +211,7 @@ def test_sanitizing_removes_what_escaping_cannot(name):
 
 
 def test_an_error_while_writing_feedback_is_a_note_of_that_student(tmp_path, monkeypatch):
-    monkeypatch.setattr(feedback, "page", lambda _: "\ud800")
+    monkeypatch.setattr(feedback, "page", lambda _, **options: "\ud800")
     (tmp_path / "b1.json").write_bytes(results.to_json(result()))
     done = classroom.write_feedback(
         tmp_path, JobResult(GradingJob("b1", tmp_path, "key"), tmp_path / "b1.json")
