@@ -398,7 +398,7 @@ def write_picture(path: str | Path, image: ArrayLike, *, is_result: bool = False
     picture = as_picture(image)
     with files.replacing(path) as name:
         if suffix == ".png" and imagecodecs.has_codec("PNG"):
-            data = imagecodecs.png_encode(picture, **PNG_OPTIONS)
+            data = imagecodecs.png_encode(np.ascontiguousarray(picture), **PNG_OPTIONS)
             name.write_bytes(mark_png(data) if is_result else data)
         else:
             options = PICTURES[suffix] | (_mark(suffix) if is_result else {})

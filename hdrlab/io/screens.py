@@ -61,7 +61,7 @@ def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> N
     named_body = b"cICP" + body
     checksum = zlib.crc32(named_body)
     chunk = struct.pack(">L", len(body)) + named_body + struct.pack(">L", checksum)
-    codes = np.rint(MAX_PNG_CODE * np.asarray(v)).astype(np.uint16)
+    codes = np.rint(MAX_PNG_CODE * np.asarray(v)).astype(np.uint16, order="C")
     data = mark_png(imagecodecs.png_encode(codes))
     files.write(path, data[:PNG_HEADER_BYTES] + chunk + data[PNG_HEADER_BYTES:])
 
@@ -90,7 +90,7 @@ def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> 
     """
     files.require_suffix(path, (".avif",), "a picture of this kind")
     _require_colors_of_avif()
-    codes = np.rint(MAX_AVIF_CODE * np.asarray(v)).astype(np.uint16)
+    codes = np.rint(MAX_AVIF_CODE * np.asarray(v)).astype(np.uint16, order="C")
     data = imagecodecs.avif_encode(
         codes,
         AVIF_QUALITY,
@@ -136,4 +136,6 @@ def write_jxl(path: str | Path, E: ArrayLike) -> None:
     2.5
     """
     files.require_suffix(path, (".jxl",), "a picture of this kind")
-    files.write(path, imagecodecs.jpegxl_encode(np.asarray(E, np.float32), lossless=True))
+    files.write(
+        path, imagecodecs.jpegxl_encode(np.asarray(E, np.float32, order="C"), lossless=True)
+    )

@@ -62,6 +62,15 @@ def test_png_keeps_every_bit_that_opencv_wrote(tmp_path, name):
     assert read.dtype == image.dtype and np.array_equal(read, image)
 
 
+@pytest.mark.parametrize("suffix", [".png", ".tif"])
+@pytest.mark.parametrize(
+    "image", [RGB8[::2, ::3], RGB8[::-1], RGB8.transpose(1, 0, 2), RGB8[..., 1]]
+)
+def test_a_view_of_an_array_is_written_like_a_copy_of_it(tmp_path, image, suffix):
+    write_picture(tmp_path / f"a{suffix}", image)
+    assert np.array_equal(read_photo(tmp_path / f"a{suffix}"), image)
+
+
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5, 3), (13, 21), (13, 21, 3), (70, 300, 3)])
 def test_png_is_written_so_that_opencv_and_pillow_read_every_bit(tmp_path, shape):
     image = RNG.integers(0, 256, shape, np.uint8)

@@ -111,6 +111,20 @@ def test_jpeg_xl_states_that_its_floats_are_linear(tmp_path):
     assert bits[9:].startswith(metadata + linear)
 
 
+@pytest.mark.parametrize(
+    ("suffix", "write"),
+    [(".png", files.write_png), (".avif", files.write_avif), (".jxl", files.write_jxl)],
+)
+def test_a_transposed_signal_gives_the_same_file_as_its_copy(tmp_path, suffix, write):
+    if suffix == ".avif":
+        require_avif_primaries()
+    v = np.random.default_rng(0).random((6, 8, 3)).transpose(1, 0, 2)
+    write(tmp_path / f"view{suffix}", v)
+    write(tmp_path / f"copy{suffix}", v.copy())
+    view = (tmp_path / f"view{suffix}").read_bytes()
+    assert view == (tmp_path / f"copy{suffix}").read_bytes()
+
+
 def test_white_has_the_signal_of_bt_2408():
     assert screens.signal(np.ones((1, 1, 3))) == pytest.approx(0.58, abs=0.002)
 
