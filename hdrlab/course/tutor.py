@@ -237,19 +237,12 @@ class Tutor:
             whole = self._step(codes[0], subject)
             if whole.is_right:
                 return [whole]
-            code = codes[0]
-            for candidate in self._rewritten(codes[0], similar_inputs):
-                with suppress(Exception):  # the solution may not accept this input
-                    step = self._step(candidate, subject)
-                    is_other = counterexamples.differs(step.right, whole.right)
-                    if is_other and not step.is_right and not step.failure:
-                        code = candidate
-                        whole = step
-                        break
+            code = self._similar_counterexample(codes[0], whole.right, subject) or codes[0]
+            whole = self._step(code, subject)
             place = _worst_place(whole.right, whole.yours)
             wrong = self._step(code + place, subject)
             simpler = self._rewritten(code, shrinking.simpler_inputs)
-            candidates = [text + place for text in simpler]
+            candidates = [text + place for text, _ in simpler]
             candidates += [code + other for other in _places(whole.right)]
             for candidate in candidates:
                 with suppress(Exception):  # the expression may not fit a smaller input
@@ -258,24 +251,54 @@ class Tutor:
                         return [step, wrong]
         return [wrong]
 
+    def _similar_counterexample(self, code: str, right: Any, subject: Subject) -> str:
+        """Return a similar counterexample with another right value than this one; "" if none is found.
+
+        The checks of the task decide whether the function is wrong, as for the first counterexample.
+        """
+        module = _module_of(self._task)
+        if module is None:
+            return ""
+        search = counterexamples.Search(
+            self._task.id, module, subject, self._solution, raised=False
+        )
+        for candidate, (args, kwargs) in self._rewritten(code, similar_inputs):
+            with suppress(Exception):  # the functions may not accept this input
+                step = self._step(candidate, subject)
+                is_other = counterexamples.differs(step.right, right)
+                if not is_other or step.is_right or step.failure:
+                    continue
+                if search.try_input(args, kwargs) is not None:
+                    return candidate
+        return ""
+
     def _rewritten(
         self, code: str, change: Callable[[Arguments], Iterable[Arguments]]
-    ) -> Iterator[str]:
-        """Yield the code of a counterexample with other inputs, which `change` makes of its own."""
+    ) -> Iterator[tuple[str, Arguments]]:
+        """Yield the code of a counterexample with other inputs, and these inputs.
+
+        `change` makes them from those of the counterexample. If the file of checks has SMALL_INPUTS,
+        they are used instead, because inputs such as files have a structure that must be kept.
+        """
         inputs, _, last = code.rpartition("\n")
         start = last.index(f"{self._task.id}(")
         call = _balanced(last[start:])
         arguments = snippets.Snippet(tuple(inputs.splitlines()), call).arguments()
         module = _module_of(self._task)
         is_valid = getattr(module, "is_valid_input", None)
-        for number, (args, kwargs) in enumerate(change(arguments)):
+        if module is not None and hasattr(module, "SMALL_INPUTS"):
+            inputs_to_try = counterexamples.small_inputs(module)
+        else:
+            inputs_to_try = iter(change(arguments))
+        for number, (args, kwargs) in enumerate(inputs_to_try):
             if number == MAX_CHANGED_INPUTS:
                 return
             if is_valid is not None and not is_valid(*args, **kwargs):
                 continue
             snippet = snippets.write(self._task.id, self._solution, args, kwargs)
             rest = last[start + len(call) :]
-            yield "\n".join([*snippet.inputs, last[:start] + snippet.call + rest])
+            text = "\n".join([*snippet.inputs, last[:start] + snippet.call + rest])
+            yield text, (tuple(args), dict(kwargs))
 
     def _subject(self) -> Subject:
         """Return the student's functions in a sandbox."""
@@ -502,7 +525,9 @@ def _balanced(text: str) -> str:
 def _only_line(source: str, name: str) -> str:
     """Return the line of a function that has one statement in one line, "" for all others."""
     functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
-    function = next(node for node in functions if node.name == name)
+    function = next((node for node in functions if node.name == name), None)
+    if function is None:  # such as a lambda that was given the name
+        return ""
     statements = [
         statement
         for statement in function.body

@@ -159,6 +159,12 @@ def test_the_only_line_of_a_function_is_shown_even_if_no_fix_is_known():
     assert "<pre>return [1.0] * n</pre>" in closing
 
 
+def test_a_lambda_with_the_name_of_the_task_gets_a_closing_without_a_line():
+    text = "hat = lambda n=256: [1.0] * n\n"
+    closing = dialogue_about("hat", text, result_of("hat", failed("hat")))[1][-1]
+    assert "<pre>" not in closing and "does not know which line" in closing
+
+
 def test_a_function_that_is_right_by_now_gets_no_question():
     known = KNOWN["hat_ends_count"]
     example = Counterexample("hat(4)", "[0.5, 1, 1, 0.5]", "[0, 1, 1, 0]")
