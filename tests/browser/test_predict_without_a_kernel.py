@@ -75,6 +75,15 @@ def test_a_typed_number_is_compared_with_the_truth(ask, typed, number, said):
     assert answer_of(page) == number
 
 
+@pytest.mark.parametrize("typed", ["", "/2", "1/", "1/0", "1/2/3", "half"])
+def test_what_is_no_number_is_asked_for_again(ask, typed):
+    page = ask("entry", code="hat(6)[2]", covers=False)
+    page.get_by_role("textbox", name="your answer").fill(typed)
+    page.keyboard.press("Enter")
+    assert status(page).startswith("Type a number first")
+    assert answer_of(page) is None
+
+
 def test_text_that_is_no_number_is_not_taken_as_an_answer(ask):
     page = ask("entry")
     page.get_by_role("textbox", name="your answer").fill("two")

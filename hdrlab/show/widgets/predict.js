@@ -91,9 +91,10 @@ const ENTRY_TOLERANCE = 0.02; // relative error of another number that counts as
 // The number that a text says, such as "0.5", "0,5" or "1/2", or null.
 function numberIn(text) {
   const plain = text.trim().replace(",", ".").replace("\u2212", "-");
-  const [numerator, denominator, ...rest] = plain.split("/");
-  if (plain === "" || rest.length > 0) return null;
-  const number = denominator === undefined ? Number(plain) : Number(numerator) / Number(denominator);
+  const parts = plain.split("/");
+  if (parts.length > 2 || parts.some((part) => part.trim() === "")) return null;
+  const [numerator, denominator] = parts;
+  const number = Number(numerator) / Number(denominator ?? 1);
   return Number.isFinite(number) ? number : null;
 }
 
