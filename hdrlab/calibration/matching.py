@@ -29,7 +29,7 @@ from hdrlab.core.arrays import F64, Array, ArrayLike
 from hdrlab.errors import InputError
 
 MAX_CODE = 255
-# w, and the w of a dark and of a bright room
+# w, and the w of a bright and of a dark room
 THRESHOLD = 0.02
 THRESHOLD_RANGE = (0.01, 0.04)
 # relative difference between two lights that look equal

@@ -46,8 +46,8 @@ def gallery() -> None:
 @click.option(
     "--pairs",
     type=click.IntRange(1, 200),
-    help="Instead of votes, ask each student which of two images is better, for up to so many "
-    "pairs, such as 20.",
+    help="Largest number of pairs of one student, such as 20. With it, students do not mark images "
+    "but choose the better one of two.",
 )
 def init(*, folder: Path, title: str, closes: str, marks: int | None, pairs: int | None) -> None:
     """Create a gallery in FOLDER.

@@ -337,7 +337,10 @@ def measure_disagreement(patches: flat_patches.FlatPatches, B: F64, fit: respons
 
 
 def weigh_corners(explained: float) -> float:
-    """Return how much a change counts, of which the distance from the center explains a fraction."""
+    """Return the weight, 0 to 1, of a change that the distance from the center explains in part.
+
+    `explained` is the fraction of the variance over the image that the distance explains.
+    """
     span = FULL_EXPLAINED_BY_RADIUS - MIN_EXPLAINED_BY_RADIUS
     return float(np.clip((explained - MIN_EXPLAINED_BY_RADIUS) / span, 0, 1))
 

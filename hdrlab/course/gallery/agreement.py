@@ -120,19 +120,19 @@ def agreements(
         "PU-SSIM": np.sign(pu_ssim[:, None] - pu_ssim[None, :]),
     }
     upper = np.triu_indices(len(rated), 1)
-    found = []
+    results = []
     for first, second in combinations(preferences, 2):
         products = (preferences[first] * preferences[second])[upper]
         decided = products[products != 0]
         if len(decided):
             share = float(np.mean(decided > 0))
             low, high = share_interval(share, len(decided), len(rated))
-            found.append(
+            results.append(
                 Agreement(
                     first=first, second=second, pairs=len(decided), share=share, low=low, high=high
                 )
             )
-    return found
+    return results
 
 
 def share_interval(share: float, pairs: int, artifacts: int) -> tuple[float, float]:

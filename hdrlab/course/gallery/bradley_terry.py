@@ -10,8 +10,8 @@ likelihood alone has no maximum if an artifact wins or loses all its pairs. So e
 gets half a win and half a loss against one of strength 0. Its strength is then finite, and a few
 votes more count for much more than this.
 
-The intervals take the votes as independent, and all voters as of one taste. They say how much the
-strengths would change with other votes, not with other artifacts.
+The intervals assume that the votes are independent, and that all voters have the same taste. They
+say how much the strengths would change with other votes, not with other artifacts.
 """
 
 from dataclasses import dataclass

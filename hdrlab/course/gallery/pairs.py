@@ -33,7 +33,7 @@ METHOD = (
     "Each voter judged up to {pairs} pairs of artifacts of other teams. The percentages are the chance to be "
     "preferred to an average artifact of this gallery, in the model of Bradley and Terry, with 95 % "
     "intervals. Where two intervals overlap, other votes could have changed the order. The intervals "
-    "treat all voters as of one taste."
+    "assume that all voters have the same taste."
 )
 
 

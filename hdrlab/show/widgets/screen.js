@@ -227,7 +227,7 @@ async function render({ model, el }) {
 
   function paintResult() {
     if (matched.size < 2) {
-      showStatus("Make both matches. Then this line tells what they measure.");
+      showStatus("Make both matches. Then this line shows the result.");
       paintScene(after.canvas, scene, wardCurve(model, comparison), PIXEL_VALUES);
       after.caption.textContent = "For this screen: make both matches first";
       after.canvas.setAttribute("aria-label", `${model.get("alt")}, not yet for this screen`);
