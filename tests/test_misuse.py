@@ -375,12 +375,6 @@ def test_unusual_radiance_gives_finite_numbers_or_a_clear_error(verb):
             assert all(np.all(np.isfinite(leaf)) for leaf in leaves(answer)), kind
 
 
-def with_one_bright_pixel(images):
-    dark = np.zeros_like(images)
-    dark[:, 0, 5] = 255
-    return dark
-
-
 AWKWARD_PHOTOS = {
     "one pixel": lambda a: a[:, :1, :1],
     "one row": lambda a: a[:, :1],
