@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
+from numpy.polynomial.polynomial import polyval
 
 from hdrlab.calibration import matching
 from hdrlab.calibration.matching import Screen
@@ -27,8 +28,11 @@ def match(screen, *, threshold=0.02, gray_error=0.0, dark_error=0.0):
 
 @pytest.mark.parametrize("gamma", GAMMAS)
 @pytest.mark.parametrize("black", BLACKS)
-def test_simulated_screens_are_recovered_within_ten_percent(gamma, black):
-    """A reader errs by 1 % in the gray, as one who sets it a few times, and by 10 % at the threshold."""
+def test_gamma_and_stops_of_simulated_screens_are_recovered_within_ten_percent(gamma, black):
+    """A reader errs by 1 % in the gray, as one who sets it a few times, and by 10 % at the threshold.
+
+    The black as a part of white is only recovered within half of its value.
+    """
     rng = np.random.default_rng(7)
     screen = Screen(gamma, black)
     gamma_errors = []
@@ -80,12 +84,10 @@ def test_the_range_of_stops_contains_the_truth_for_eyes_of_one_to_four_percent(t
 
 def test_thresholds_are_those_of_the_dicom_gray_scale_function():
     """DICOM PS3.14, table B-1 by its formula: one just noticeable difference at a luminance."""
-    a, c, e, g, m = -1.3011877, 8.0242636e-2, 1.3646699e-1, -2.5468404e-2, 1.3635334e-3
-    b, d, f, h, k = -2.5840191e-2, -1.0320229e-1, 2.8745620e-2, -3.1978977e-3, 1.2992634e-4
+    numerator = [-1.3011877, 8.0242636e-2, 1.3646699e-1, -2.5468404e-2, 1.3635334e-3]
+    denominator = [1, -2.5840191e-2, -1.0320229e-1, 2.8745620e-2, -3.1978977e-3, 1.2992634e-4]
     x = np.log(np.arange(1, 1024))
-    above = a + c * x + e * x**2 + g * x**3 + m * x**4
-    below = 1 + b * x + d * x**2 + f * x**3 + h * x**4 + k * x**5
-    luminance = 10 ** (above / below)
+    luminance = 10 ** (polyval(x, numerator) / polyval(x, denominator))
     w = np.diff(luminance) / luminance[:-1]
     low, high = matching.THRESHOLD_RANGE
     at = np.interp([20, 2, 0.3], luminance[:-1], w)
